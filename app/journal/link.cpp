@@ -16,7 +16,7 @@ namespace achilles {
 namespace {
 
 constexpr std::string_view mark = "#run=";
-// Base64 for addresses (RFC 4648, section 5), without padding.
+// The base64url of RFC 4648, without padding.
 constexpr std::string_view link_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
 InputError damaged() { return {"the link", {}, "the run in this link is damaged", "copy the whole link"}; }

@@ -14,19 +14,19 @@
 namespace achilles {
 
 template <class Result>
-class Worker {
+class ThreadedWorker {
  public:
     // Must poll the token: after a stop request its result or exception is discarded.
     using Job = std::function<Result(std::stop_token)>;
 
-    Worker() : thread_([this](const std::stop_token& end) { work(end); }) {}
+    ThreadedWorker() : thread_([this](const std::stop_token& end) { work(end); }) {}
     // Requests a stop of the job under way and waits for it.
-    ~Worker() {
+    ~ThreadedWorker() {
         const std::lock_guard lock(mutex_);
         current_.request_stop();
     }
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
+    ThreadedWorker(const ThreadedWorker&) = delete;
+    ThreadedWorker& operator=(const ThreadedWorker&) = delete;
 
     // Called on the worker's thread each time a result has become ready.
     void on_ready(std::function<void()> ready) {

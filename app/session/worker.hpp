@@ -23,6 +23,14 @@
 
 namespace achilles {
 
+#if defined(__EMSCRIPTEN__)
+template <class Result>
+using Worker = PageWorker<Result>;
+#else
+template <class Result>
+using Worker = ThreadedWorker<Result>;
+#endif
+
 // Timeout in seconds; nullopt waits indefinitely.
 using Timeout = std::optional<double>;
 

@@ -12,13 +12,13 @@
 namespace achilles {
 
 template <class Result>
-class Worker {
+class PageWorker {
  public:
     using Job = std::function<Result(std::stop_token)>;
 
-    Worker() = default;
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
+    PageWorker() = default;
+    PageWorker(const PageWorker&) = delete;
+    PageWorker& operator=(const PageWorker&) = delete;
 
     // Never called: a result is ready only when it is taken.
     void on_ready(const std::function<void()>&) {}

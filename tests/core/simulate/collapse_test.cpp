@@ -7,11 +7,12 @@
 #include <random>
 
 #include "contacts/collapse.hpp"
-#include "core/systems.hpp"
-#include "simulate/sampler.hpp"
+#include "core/simulate/collapses.hpp"
 
 namespace achilles {
 namespace {
+
+using test::collapses_of;
 
 std::shared_ptr<const Model> load_collapse(const std::string& name) {
     return std::make_shared<const Model>(read_system(test::source_file("tests/reference/collapse/" + name + ".toml")));
@@ -29,10 +30,6 @@ Trajectory run_with(const std::shared_ptr<const Model>& model, double eps, Metho
     run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = eps;
     if (e >= 0.0) run.parameters.back() = e;
     return simulate(model, run);
-}
-
-std::vector<Event> collapses_of(const Trajectory& trajectory) {
-    return test::events_of(trajectory, Event::Kind::collapse);
 }
 
 // A pair of planes at an angle: gaps x and -gamma x + sqrt(1 - gamma^2) y, so W12 = -gamma.
@@ -102,29 +99,14 @@ constraint = [{{name = "p", gap = "x + {}*z^2 + {}*x*z", restitution = {}}},
 // collapse is in its interval, and the states just after both collapses differ by no more than the shadowing bounds.
 TEST(Collapse, CertificatesOfEarlyCutsContainTheTrueMotion) {
     std::mt19937 random(43);
-    int compared = 0, resolved = 0;
-    double closest = 0.0;
+    test::EarlyCuts cuts;
     for (int i = 0; i < 100; ++i) {
-        const auto model = random_pair(random);
-        const Trajectory early = run_with(model, 0.01, Method::taylor), late = run_with(model, 1e-12, Method::taylor);
-        const auto rough = collapses_of(early), exact = collapses_of(late);
-        if (rough.empty() || exact.empty() || !rough[0].certificate->decision) continue;
-        const Certificate& certificate = *rough[0].certificate;
-        ++compared;
-        EXPECT_LE(certificate.zeno_low, exact[0].t + 1e-13) << i;
-        EXPECT_GE(certificate.zeno_high, exact[0].t - 1e-13) << i;
-        EXPECT_EQ(rough[0].mode, exact[0].mode) << i;
-        const double t = std::max(rough[0].t, exact[0].t);
-        const Sample one = early(t), other = late(t);
-        const double q = (one.state.q - other.state.q).norm(), v = (one.state.v - other.state.v).norm();
-        EXPECT_LE(q, *certificate.shadowing_position + 1e-13) << i;
-        EXPECT_LE(v, *certificate.shadowing_velocity + 1e-12) << i;
-        if (q + v > 1e-9) ++resolved;
-        closest = std::max({closest, q / *certificate.shadowing_position, v / *certificate.shadowing_velocity});
+        SCOPED_TRACE(i);
+        cuts.compare(random_pair(random));
     }
-    EXPECT_GE(compared, 40);
-    EXPECT_GE(resolved, 20);   // else the cuts were not early
-    EXPECT_GT(closest, 1e-4);  // else the bounds would say nothing
+    EXPECT_GE(cuts.compared, 40);
+    EXPECT_GE(cuts.resolved, 20);   // else the cuts were not early
+    EXPECT_GT(cuts.closest, 1e-4);  // else the bounds would say nothing
 }
 
 // The impulses are those of the plastic impact on both, and the energy balance closes.

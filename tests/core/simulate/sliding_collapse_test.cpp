@@ -8,23 +8,13 @@
 #include <random>
 
 #include "contacts/collapse.hpp"
-#include "core/systems.hpp"
-#include "simulate/sampler.hpp"
+#include "core/simulate/collapses.hpp"
 
 namespace achilles {
 namespace {
 
-std::vector<Event> collapses_of(const Trajectory& trajectory) {
-    return test::events_of(trajectory, Event::Kind::collapse);
-}
-
-Trajectory run_with(const std::shared_ptr<const Model>& model, double eps, Method method = Method::taylor) {
-    auto run = model->default_run();
-    run.options.method = method;
-    run.options.tolerance = 1e-13;
-    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = eps;
-    return simulate(model, run);
-}
+using test::collapses_of;
+using test::run_cut_at;
 
 // Planes at an angle with W_NN = (1, -gamma; -gamma, 1), on which a point slides with the slips z + a x + b y.
 struct SlidingPlanes {
@@ -100,7 +90,7 @@ TEST(SlidingCollapse, EndsWhereTheImpactsInTurnEnd) {
         ASSERT_GT(exact.impacts, 20);
         const auto model = planes.model();
         for (const Method method : test::both_methods) {
-            const Trajectory run = run_with(model, 1e-10, method);
+            const Trajectory run = run_cut_at(model, 1e-10, method);
             ASSERT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
             const auto collapses = collapses_of(run);
             ASSERT_EQ(collapses.size(), 1u) << mu;
@@ -118,7 +108,7 @@ TEST(SlidingCollapse, EndsWhereTheImpactsInTurnEnd) {
 TEST(SlidingCollapse, ReportsThePlasticImpactWithFriction) {
     SlidingPlanes planes;
     planes.potential = "x + 2*y";
-    const Trajectory run = run_with(planes.model(), 1e-8);
+    const Trajectory run = run_cut_at(planes.model(), 1e-8);
     ASSERT_EQ(collapses_of(run).size(), 1u) << run.outcome.message;
     const Event event = collapses_of(run)[0];
     const double W12 = -0.9 - planes.mu_r * planes.slip_r[0], W11 = 1.0 - planes.mu_p * planes.slip_p[0],
@@ -142,8 +132,7 @@ TEST(SlidingCollapse, CertificatesOfEarlyCutsContainTheTrueMotion) {
     const auto draw = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
-    int compared = 0, resolved = 0;
-    double closest = 0.0;
+    test::EarlyCuts cuts;
     for (int i = 0; i < 30; ++i) {
         SlidingPlanes planes;
         planes.gamma = draw(0.90, 0.97);
@@ -162,26 +151,12 @@ TEST(SlidingCollapse, CertificatesOfEarlyCutsContainTheTrueMotion) {
         planes.force = fmt::format("{}*z'*x' + {}*y'", draw(-0.1, 0.1), draw(-1, 1));
         planes.bend_p = fmt::format("{}*z^2 + {}*x*z", draw(-0.01, 0.01), draw(-0.1, 0.1));
         planes.bend_r = fmt::format("{}*z^2 + {}*y*z", draw(-0.01, 0.01), draw(-0.1, 0.1));
-        const auto model = planes.model();
-        const Trajectory early = run_with(model, 0.01), late = run_with(model, 1e-12);
-        const auto rough = collapses_of(early), exact = collapses_of(late);
-        if (rough.empty() || exact.empty() || !rough[0].certificate->decision) continue;
-        const Certificate& certificate = *rough[0].certificate;
-        ++compared;
-        EXPECT_LE(certificate.zeno_low, exact[0].t + 1e-13) << i;
-        EXPECT_GE(certificate.zeno_high, exact[0].t - 1e-13) << i;
-        EXPECT_EQ(rough[0].mode, exact[0].mode) << i;
-        const double t = std::max(rough[0].t, exact[0].t);
-        const Sample one = early(t), other = late(t);
-        const double q = (one.state.q - other.state.q).norm(), v = (one.state.v - other.state.v).norm();
-        EXPECT_LE(q, *certificate.shadowing_position + 1e-13) << i;
-        EXPECT_LE(v, *certificate.shadowing_velocity + 1e-12) << i;
-        if (q + v > 1e-9) ++resolved;
-        closest = std::max({closest, q / *certificate.shadowing_position, v / *certificate.shadowing_velocity});
+        SCOPED_TRACE(i);
+        cuts.compare(planes.model());
     }
-    EXPECT_GE(compared, 27);
-    EXPECT_GE(resolved, 15);   // else the cuts were not early
-    EXPECT_GT(closest, 1e-4);  // else the bounds would say nothing
+    EXPECT_GE(cuts.compared, 27);
+    EXPECT_GE(cuts.resolved, 15);   // else the cuts were not early
+    EXPECT_GT(cuts.closest, 1e-4);  // else the bounds would say nothing
 }
 
 // Two contacts that close at once come to rest at once, and slide on with what the friction of the plastic impact leaves.
@@ -189,7 +164,7 @@ TEST(SlidingCollapse, ATieIsThePlasticImpact) {
     SlidingPlanes planes;
     planes.start = {0.0, -1.0, 0.0, -3.5};
     planes.potential = "x + y";
-    const Trajectory run = run_with(planes.model(), 1e-8);
+    const Trajectory run = run_cut_at(planes.model(), 1e-8);
     ASSERT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
     ASSERT_GE(run.events.size(), 2u);
     EXPECT_TRUE(run.events[0].is_impact());
@@ -212,13 +187,13 @@ TEST(SlidingCollapse, IsNotCutWhereASlipMayEnd) {
     SlidingPlanes planes;
     planes.mu_p = planes.mu_r = 0.4;
     planes.potential = "x + 2*y";
-    const Trajectory slides_on = run_with(planes.model(), 0.01);
+    const Trajectory slides_on = run_cut_at(planes.model(), 0.01);
     ASSERT_EQ(collapses_of(slides_on).size(), 1u);
     const double lost = planes.slide - collapses_of(slides_on)[0].v_after[2];  // of the slip
     int cut = 0;
     for (const double short_of : {3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
         planes.slide = lost - short_of;
-        const Trajectory run = run_with(planes.model(), 0.01);
+        const Trajectory run = run_cut_at(planes.model(), 0.01);
         // A wrong cut would end here: the slip would reach zero before the collapse.
         EXPECT_EQ(run.outcome.message.find("before the Zeno time"), std::string::npos) << run.outcome.message;
         for (const Event& event : collapses_of(run)) {
@@ -239,7 +214,7 @@ TEST(SlidingCollapse, TheSliderCrankWithFrictionRunsToItsEnd) {
                                        0.07205775738680},
         release{0.01503132845240, 0.03434504307467, 0.05083541866627, 0.06834157226589, 0.08354928075546};
     for (const Method method : test::both_methods) {
-        const Trajectory run = run_with(model, 1e-11, method);
+        const Trajectory run = run_cut_at(model, 1e-11, method);
         ASSERT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
         const auto collapses = collapses_of(run), releases = test::events_of(run, Event::Kind::release);
         ASSERT_EQ(collapses.size(), collapse.size());
