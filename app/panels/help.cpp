@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* help_title = "Keys and words";
 constexpr float keys_width = 340.0F, keys_column = 142.0F, word_column = 158.0F, narrow_indent = 16.0F,
-                narrow_words = 380.0F, widest_help = 1240.0F, highest_help = 1100.0F;
+                narrow_words = 380.0F, widest_help = 1240.0F, highest_help = 1500.0F;
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))

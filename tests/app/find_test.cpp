@@ -52,7 +52,7 @@ TEST(Help, TakesEscapeForItself) {
 }
 
 TEST(Help, HasEveryWordAndKeyOnTheCard) {
-    const SurfaceOptions tall = test::surface(1600, 1400);
+    const SurfaceOptions tall = test::surface(1600, 1600);
     Hands hands("ball_on_sine", tall);
     hands.session.apply(parse_command("show help"));
     hands.rest(3);
