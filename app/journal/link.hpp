@@ -19,8 +19,8 @@ std::string link_of(const Session& session);
 // True for text that carries a session behind #run=.
 bool is_link(std::string_view text);
 
-// The journal in a link, or in the part of it after #. Throws InputError if there is none, or if it is damaged or too
-// large. Like every journal, it may come from a stranger: read it with parse_trusted().
+// The journal in a link, or in the part of a link after #. Throws InputError if the link holds no journal, a damaged
+// one, or one that is too large. Like every journal, it may come from a stranger: read it with parse_trusted().
 std::string journal_in_link(std::string_view link);
 
 // The text of a journal given as a link, as a path or by the name of a tour. Throws InputError.

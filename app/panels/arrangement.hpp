@@ -37,7 +37,7 @@ struct Measures {
     float width = 0.0F, height = 0.0F;  // the surface
     float unit = 1.0F;                  // one pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
-    float tabs = 30.0F;                      // of the panels in a small window
+    float tabs = 30.0F;                      // height of the row of tabs in a small window
     float title = 0.0F, sliders = 0.0F;      // of a lecture; 0: not shown
     float energy = 0.0F, min_energy = 0.0F;  // with and without its time plot; 0: not shown
     // Heights, for a given width, of the error message, the tour caption, the results, and the numbers over the

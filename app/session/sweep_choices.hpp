@@ -17,7 +17,8 @@ class Session;
 std::vector<std::string> offered_prints(const SystemDescription& description, const SweepSpec& sweep);
 // The command that shows this sweep around the current run.
 command::ShowSweep showing(const SweepSpec& sweep, const SystemDescription& description);
-// The axis for a parameter, initial value or option of this name, over the range of its slider; empty if there is none.
+// The axis of a sweep over the range of the slider with this name: a parameter, an initial value or an option.
+// nullopt if no slider has this name.
 std::optional<SweepAxis> axis_for(const Session& session, const std::string& name);
 
 }  // namespace achilles

@@ -102,8 +102,8 @@ class ThreadedWorker {
     std::condition_variable_any changed_;
     std::function<void()> ready_;
     Job job_;                          // not started yet
-    std::stop_source current_;         // of the newest job
-    std::optional<JobResult> answer_;  // of the newest job
+    std::stop_source current_;         // stops the newest job
+    std::optional<JobResult> answer_;  // what the newest job gave, until it is taken
     bool busy_ = false;                // the newest job has no answer yet
     std::jthread thread_;              // the last member, since the thread uses all others
 };

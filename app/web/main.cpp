@@ -64,7 +64,7 @@ extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_copied() { return kept(wind
 int main(int count, char** words) try {
     if (count > 1) setenv("ACHILLES_WEB", words[1], 1);
     setenv("ACHILLES_ASSETS", "/assets", 1);
-    umask(S_IWGRP | S_IWOTH);  // at first it is such that nobody may read a new file
+    umask(S_IWGRP | S_IWOTH);  // Emscripten starts with 0777, and nobody could read a new file.
     std::filesystem::create_directory(folder);
     std::filesystem::current_path(folder);
     window = new achilles::ExplorerWindow(options_of(count > 2 ? words[2] : ""));

@@ -82,8 +82,9 @@ constexpr std::pair<std::string_view, int> named_keys[] = {{"Escape", key::escap
                                                            {"Alt", key::left_alt},
                                                            {"Meta", key::left_super}};
 
-// Code of a key; 0 for one that the explorer does not know. Letters, plus and minus follow the keyboard layout instead
-// of the position, as in a desktop window. Digits follow the position, since Shift changes their character.
+// Code of a key; 0 for one that the explorer does not know. Letters, plus and minus are known by what
+// the keyboard layout prints, as in a desktop window; digits by the place of their key, since Shift changes what it
+// prints.
 int code_of(const EmscriptenKeyboardEvent& event) {
     const std::string_view name = event.key, place = event.code;
     if (place == "NumpadEnter") return key::keypad_enter;
@@ -315,7 +316,7 @@ void Window::run(const FrameFunction& draw) {
     emscripten_set_main_loop_arg(frame, implementation_.get(), 0, 0);
 }
 
-// A page is closed by the browser, which asks nobody.
+// The browser closes a page without asking the explorer.
 void Window::on_close(std::function<bool()>) {}
 void Window::close() {}
 
