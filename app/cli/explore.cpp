@@ -43,13 +43,6 @@ constexpr double frame_patience = 1.0 / 40.0;
 constexpr const char *allow_here = "if you trust it: --allow-files",
                      *allow_in_window = "if you trust it, in a window: achilles explore --allow-files LINK";
 
-// On another thread, which a page does not have.
-#if defined(__EMSCRIPTEN__)
-constexpr std::launch meanwhile = std::launch::deferred;
-#else
-constexpr std::launch meanwhile = std::launch::async;
-#endif
-
 }  // namespace
 
 // The explorer in its window. It passes commands from the user, dropped files and tours to the session, the record file
@@ -370,13 +363,12 @@ Window window_for(const ExploreOptions& options, const std::string& system) {
 // What the window refers to, in the order in which it is made.
 struct ExplorerWindow::Implementation {
     explicit Implementation(const ExploreOptions& options)
-        : on_page(options.page.has_value()),
-          journal(first_commands(options)),
+        : journal(first_commands(options)),
           name(options.system ? *options.system : first_system()),
           trust(trust_of(options.allow_files, {options.system.value_or(""), options.journal},
                          work_options(options.overrides), options.page ? allow_in_window : allow_here)),
           // Opening the window takes time; read the gallery meanwhile.
-          state(std::async(meanwhile, panel_state, true)),
+          state(std::async(std::launch::async, panel_state, true)),
           session(open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                library(options), journal.empty() ? Timeout(frame_patience) : Timeout())),
           window(window_for(options, name)),
@@ -410,7 +402,6 @@ struct ExplorerWindow::Implementation {
         return source;
     }
 
-    bool on_page;
     std::vector<Command> journal;
     std::string name;
     FilePolicy trust;
@@ -428,7 +419,7 @@ ExplorerWindow::~ExplorerWindow() = default;
 void ExplorerWindow::run() {
     Implementation& self = *implementation_;
     self.session.set_patience(frame_patience);
-    if (!self.on_page) self.session.prove_behind();  // a page computes in slices of its only thread
+    self.session.prove_behind();
     if (!self.journal.empty()) self.explorer.begin(self.journal);
     self.session.on_ready(Window::wake);
     self.window.on_close([&self] { return self.explorer.may_close(); });

@@ -67,12 +67,13 @@ bool Session::apply(const Command& command) {
     }
     const UndoState before = undo_state();
     const std::string noticed = std::exchange(notice_, {});
+    const std::string failed = std::exchange(error_, {});
     warnings_.clear();
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playback commands and the end of an edit must not clear the error of the last change.
         const bool changes_nothing = undo_policy_of(command) == command::UndoPolicy::none;
-        if (!changes_nothing) error_.clear();
+        if (changes_nothing && error_.empty()) error_ = failed;
         if (changes_nothing && notice_.empty()) notice_ = noticed;
         history_.remember(command, before, undo_state());
         follow_studies();

@@ -141,9 +141,9 @@ void Session::perform(const command::StepEvents& command) {
 
 // Sets a value without an undo step of its own: the whole animation is one. Returns false if it is refused.
 bool Session::vary(const std::string& name, double value) {
+    error_.clear();
     try {
         perform(command::SetStart{{{name, value}}});
-        error_.clear();
         follow_studies();
         return true;
     } catch (const PermissionDenied&) {

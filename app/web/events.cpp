@@ -4,8 +4,6 @@
 
 #include "achilles.hpp"
 
-void achilles::check_page_work() {}  // node may take its time
-
 int main(int count, char** words) try {
     if (count != 2) {
         std::fprintf(stderr, "usage: achilles_events SYSTEM.toml\n");

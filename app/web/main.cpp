@@ -7,7 +7,6 @@
 #include <exception>
 #include <filesystem>
 #include <string>
-#include <utility>
 
 #include "cli/explore.hpp"
 #include "journal/link.hpp"
@@ -32,9 +31,14 @@ achilles::ExploreOptions options_of(const std::string& fragment) {
 achilles::ExplorerWindow* window = nullptr;
 
 // What the functions below return stays until the next call of one of them.
-const char* kept(std::string text) {
+template <class Text>
+const char* kept(const Text& text) {
     static std::string last;
-    last = std::move(text);
+    try {
+        last = text();
+    } catch (const std::exception& problem) {
+        last = std::string("failed: ") + problem.what();
+    }
     return last.c_str();
 }
 
@@ -42,23 +46,30 @@ const char* kept(std::string text) {
 
 // For tests of the page (tests/web): the session as text, the event times of its run with all their bits, the time its
 // computation took, what was copied, and the place of a control, as "left top width height" in pixels.
-extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_session() { return kept(to_text(window->session())); }
+extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_session() {
+    return kept([] { return to_text(window->session()); });
+}
 extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_events() {
-    std::string text;
-    for (const achilles::Event& event : window->session().trajectory().events) text += fmt::format("{:a}\n", event.t);
-    return kept(text);
+    return kept([] {
+        std::string text;
+        for (const achilles::Event& event : window->session().trajectory().events)
+            text += fmt::format("{:a}\n", event.t);
+        return text;
+    });
 }
 extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_place(const char* control) {
     const auto& places = window->panels().places;
     const auto found = places.find(control);
     if (found == places.end()) return "";
     const achilles::Rectangle& area = found->second;
-    return kept(fmt::format("{} {} {} {}", area.x, area.y, area.width, area.height));
+    return kept([&] { return fmt::format("{} {} {} {}", area.x, area.y, area.width, area.height); });
 }
 extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_seconds() {
-    return kept(fmt::format("{}", window->session().trajectory().statistics.seconds));
+    return kept([] { return fmt::format("{}", window->session().trajectory().statistics.seconds); });
 }
-extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_copied() { return kept(window->session().copied()); }
+extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_copied() {
+    return kept([] { return window->session().copied(); });
+}
 
 // Arguments: the address of the page, and what follows # in it.
 int main(int count, char** words) try {

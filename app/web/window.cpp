@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <map>
 #include <optional>
@@ -18,7 +19,6 @@
 #include "surface/draw_data.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
-#include "web/page_work.hpp"
 
 // clang-format off
 EM_JS(void, show_cursor_named, (const char* name), { Module.canvas.style.cursor = UTF8ToString(name); })
@@ -113,8 +113,8 @@ unsigned character_of(std::string_view name) {
 std::function<void(const char*)> paste;
 // Dropped files that the explorer has not taken yet.
 std::vector<std::string> drops;
-// Set by a finished job: the next frames must show its result.
-bool was_woken = false;
+// Set by a finished job, on its thread: the next frames must show its result.
+std::atomic<bool> was_woken = false;
 
 }  // namespace
 
@@ -280,10 +280,9 @@ void Window::Implementation::show_cursor() {
 }
 
 void Window::Implementation::frame() {
-    begin_frame();
     fit_to_page();
-    if (std::exchange(was_woken, false) || !events.empty()) unsettled = settling_frames;
-    if (!moving && unsettled == 0 && !WaitingWork::exists()) return;
+    if (was_woken.exchange(false) || !events.empty()) unsettled = settling_frames;
+    if (!moving && unsettled == 0) return;
     const double now = emscripten_get_now() / 1e3;
     // ImGui rejects a time step of zero. After a sleep nothing must jump.
     const double step = last_frame < 0.0 ? 1.0 / 60.0 : std::clamp(now - last_frame, 1e-4, 0.1);

@@ -36,13 +36,15 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
 namespace {
 
 // Reserves room for `more` elements. Growing a vector briefly needs twice its memory. A large vector therefore reserves
-// address space for all that the run may record; the system provides memory only for pages that are written.
+// address space for all that the run may record; the system provides memory only for pages that are written. With
+// addresses of 32 bits (on a page) there is no such space to spare.
 template <class Element>
 void make_room(std::vector<Element>& vector, std::size_t more, double max_bytes) {
     constexpr std::size_t large = std::size_t{8} << 20;  // bytes
+    constexpr bool has_space_to_spare = sizeof(void*) >= 8;
     if (vector.capacity() - vector.size() >= more) return;
     const std::size_t doubled = 2 * vector.size() + more;
-    if (doubled * sizeof(Element) > large && vector.size() * sizeof(Element) < large) {
+    if (has_space_to_spare && doubled * sizeof(Element) > large && vector.size() * sizeof(Element) < large) {
         try {
             constexpr double max_address_space = 1e12;
             const double elements = std::min(max_bytes, max_address_space) / sizeof(Element);

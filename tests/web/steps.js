@@ -81,6 +81,34 @@
     if (ask('events') === before) throw new Error('the slider moved nothing');
   }
 
+  // A run of seconds: frames and input go on meanwhile. The first is stopped by the value before it, the second ends.
+  async function waitForLongRun(report) {
+    const slider = place('set e');
+    const at = (share) => [slider.x + share * slider.width, slider.y + slider.height / 2];
+    const short = ask('events');
+    mouse('mousemove', ...at(0.3));
+    await rest(3);
+    mouse('mousedown', ...at(0.3));
+    await rest(3);
+    mouse('mousemove', ...at(0.4));
+    await until('the run before', () => ask('events') !== short);
+    await rest(3);
+    const before = ask('events'), first = frames.length;
+    mouse('mousemove', ...at(1.2));
+    await rest(10);
+    report.goes_on = ask('events') === before;
+    mouse('mousemove', ...at(0.5));
+    await until('the run after a stopped one', () => ask('events') !== before);
+    report.stopped_run_ms = 1e3 * Number(ask('seconds'));
+    const between = ask('events'), start = performance.now();
+    mouse('mousemove', ...at(1.2));
+    await until('the long run', () => ask('events') !== between);
+    report.long_run_ms = performance.now() - start;
+    report.long_run_frame_ms = frames.slice(first).sort((a, b) => a - b);
+    mouse('mouseup', ...at(1.2));
+    await rest(5);
+  }
+
   async function copyLink() {
     const held = {ctrlKey: true, shiftKey: true};
     keyboard('keydown', 'Control', 'ControlLeft');
@@ -129,7 +157,8 @@
 
   async function run() {
     const report = {};
-    const steps = (new URLSearchParams(location.search).get('steps') || '').split(',');
+    const asked = new URLSearchParams(location.search), steps = (asked.get('steps') || '').split(',');
+    if (asked.has('size')) [Module.canvas.style.width, Module.canvas.style.height] = asked.get('size').split('x').map((n) => n + 'px');
     await until('the explorer runs', () => Module.calledRun && note.style.display === 'none' && ask('session') !== '');
     await until('its first frame', () => has('play'));
     report.first_paint_ms = performance.now();
@@ -140,6 +169,7 @@
     report.events = events();
     report.picture = await drawn();
     if (steps.includes('drag')) await drag(report);
+    if (steps.includes('long')) await waitForLongRun(report);
     if (steps.includes('link')) await copyLink();
     if (steps.includes('play')) await play(report);
     if (steps.includes('export')) await exportFigure(report);
@@ -153,6 +183,6 @@
   }
 
   window.addEventListener('load', () => run()
-    .catch((problem) => ({failure: problem.message + ' / ' + note.textContent}))
+    .catch((problem) => ({failure: (problem.message || problem) + ' / ' + note.textContent}))
     .then((report) => fetch('/report', {method: 'POST', body: JSON.stringify(report)})));
 })();

@@ -1,4 +1,4 @@
-// Stand-in for TBB on a page, which has one thread.
+// Stand-in for TBB on a page, where a sweep has one thread.
 #pragma once
 
 namespace tbb::info {
