@@ -186,14 +186,16 @@ void Canvas::draw_command(const ImDrawList& list, const ImDrawCmd& command, cons
 Image Canvas::read(bool transparent) const {
     Image image{target_.width, target_.height, {}, {}};
     const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    image.rgb.resize(3 * pixels);
-    if (image.rgb.empty()) return image;  // nothing was drawn yet
+    if (pixels == 0) return image;               // nothing was drawn yet
+    std::vector<std::uint8_t> read(4 * pixels);  // WebGL reads all four components or none
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer);
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
-    gl_.ReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+    gl_.ReadPixels(0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
+    image.rgb.resize(3 * pixels);
+    for (std::size_t i = 0; i < pixels; ++i) std::copy_n(&read[4 * i], 3, &image.rgb[3 * i]);
     if (!transparent) return image;
     image.alpha.resize(pixels);
-    gl_.ReadPixels(0, 0, image.width, image.height, GL_ALPHA, GL_UNSIGNED_BYTE, image.alpha.data());
+    for (std::size_t i = 0; i < pixels; ++i) image.alpha[i] = read[4 * i + 3];
     // On transparency, colors are premultiplied by alpha.
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const int alpha = image.alpha[i / 3];

@@ -2,11 +2,15 @@
 
 #include <dlfcn.h>
 #include <sys/mman.h>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <thread>
+
+#include "surface/offscreen.hpp"
 
 namespace achilles {
 
@@ -92,6 +96,52 @@ MemoryContext os_mesa_context() {
     context.release = [&library] { library.make_current(nullptr, nullptr, 0, 0, 0); };
     context.address = [&library](const char* name) { return reinterpret_cast<void*>(library.address(name)); };
     return context;
+}
+
+// ---- the choice ----
+
+namespace {
+
+// Address space (bytes) that Mesa and its compiler need for pictures of this size. Measured without a limit on two
+// cores: 460 MB and 9 bytes per pixel; each further core has a thread with its stack.
+std::size_t room_for(int width, int height) {
+    constexpr std::size_t fixed = std::size_t{512} << 20, per_core = std::size_t{8} << 20, per_pixel = 16;
+    const std::size_t cores = std::clamp(std::thread::hardware_concurrency(), 2U, 16U);  // Mesa uses at most 16
+    return fixed + (cores - 2) * per_core +
+           per_pixel * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+}  // namespace
+
+MemoryContext memory_context(int width, int height) {
+    check_room("drawing", room_for(width, height));
+    choose_renderer();
+    const char* const given = std::getenv("ACHILLES_OFFSCREEN");
+    const std::string wanted = given == nullptr ? "" : given;
+    if (wanted == "osmesa") return os_mesa_context();
+    if (wanted == "egl") return egl_context();
+    if (!wanted.empty()) throw std::runtime_error("ACHILLES_OFFSCREEN must be osmesa or egl, not '" + wanted + "'");
+    std::string missing;
+    try {
+        return os_mesa_context();
+    } catch (const std::runtime_error& error) {
+        missing = error.what();
+    }
+    try {
+        return egl_context();
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error("drawing without a window needs OSMesa or EGL, but " + missing + ", and " +
+                                 error.what() + "\ninstall the package libosmesa6, or libegl1 and libgl1-mesa-dri");
+    }
+}
+
+void check_room(const std::string& purpose, std::size_t bytes) {
+    void* const room =
+        ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED)
+        throw NotEnoughMemory("there is not enough memory for " + purpose + ", which may take " +
+                              std::to_string(bytes >> 20) + " MB; ulimit -v prints the limit for this process");
+    ::munmap(room, bytes);
 }
 
 }  // namespace achilles

@@ -56,6 +56,9 @@ struct MemoryContext {
 // All throw std::runtime_error with the name of the missing library, or with another reason.
 MemoryContext os_mesa_context();  // via libOSMesa
 MemoryContext egl_context();      // via libEGL without a surface (egl.cpp)
+// OSMesa for pictures of this size in pixels, or EGL where Debian no longer has OSMesa; both produce the same bytes.
+// ACHILLES_OFFSCREEN=osmesa or egl forces one. Throws NotEnoughMemory as well. A page has its own (app/web).
+MemoryContext memory_context(int width, int height);
 
 // Mesa's renderer generates machine code and crashes where the system forbids executable memory. In this case another
 // renderer is chosen, which is slower and differs in the last bits. Call it before a context is created.

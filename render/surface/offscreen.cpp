@@ -1,14 +1,8 @@
 #include "surface/offscreen.hpp"
 
-#include <sys/mman.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "surface/draw_data.hpp"
 #include "surface/interface.hpp"
@@ -17,38 +11,6 @@
 namespace achilles {
 
 namespace {
-
-// Address space (bytes) that Mesa and its compiler need for pictures of this size. Measured without a limit on two
-// cores: 460 MB and 9 bytes per pixel; each further core has a thread with its stack.
-std::size_t room_for(int width, int height) {
-    constexpr std::size_t fixed = std::size_t{512} << 20, per_core = std::size_t{8} << 20, per_pixel = 16;
-    const std::size_t cores = std::clamp(std::thread::hardware_concurrency(), 2U, 16U);  // Mesa uses at most 16
-    return fixed + (cores - 2) * per_core +
-           per_pixel * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-}
-
-// OSMesa, or EGL where Debian no longer has OSMesa; both produce the same bytes. ACHILLES_OFFSCREEN=osmesa or egl
-// forces one.
-MemoryContext memory_context() {
-    choose_renderer();
-    const char* const given = std::getenv("ACHILLES_OFFSCREEN");
-    const std::string wanted = given == nullptr ? "" : given;
-    if (wanted == "osmesa") return os_mesa_context();
-    if (wanted == "egl") return egl_context();
-    if (!wanted.empty()) throw std::runtime_error("ACHILLES_OFFSCREEN must be osmesa or egl, not '" + wanted + "'");
-    std::string missing;
-    try {
-        return os_mesa_context();
-    } catch (const std::runtime_error& error) {
-        missing = error.what();
-    }
-    try {
-        return egl_context();
-    } catch (const std::runtime_error& error) {
-        throw std::runtime_error("drawing without a window needs OSMesa or EGL, but " + missing + ", and " +
-                                 error.what() + "\ninstall the package libosmesa6, or libegl1 and libgl1-mesa-dri");
-    }
-}
 
 // Fixed duration of a frame, so that pictures do not depend on a clock.
 constexpr double frame_seconds = 1.0 / 60.0;
@@ -64,8 +26,7 @@ void check_size(int width, int height) {
 struct Offscreen::Implementation {
     explicit Implementation(const SurfaceOptions& surface) : options(surface), interface(surface) {
         check_size(surface.width, surface.height);
-        check_room("drawing", room_for(surface.width, surface.height));
-        context = memory_context();
+        context = memory_context(surface.width, surface.height);
         const Interface::Active active(interface);
         const CurrentContext current(*this);
         canvas.emplace(context.address, surface.curve_fineness);
@@ -130,15 +91,6 @@ void Offscreen::restyle(double scale, bool dark) {
     implementation_->interface.restyle(scale, dark);
     const Implementation::CurrentContext current(*implementation_);
     implementation_->canvas->load_fonts();
-}
-
-void check_room(const std::string& purpose, std::size_t bytes) {
-    void* const room =
-        ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (room == MAP_FAILED)
-        throw NotEnoughMemory("there is not enough memory for " + purpose + ", which may take " +
-                              std::to_string(bytes >> 20) + " MB; ulimit -v prints the limit for this process");
-    ::munmap(room, bytes);
 }
 
 }  // namespace achilles

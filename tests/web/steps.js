@@ -109,7 +109,8 @@
     await rest(5);
   }
 
-  async function copyLink() {
+  // Types a command into the palette.
+  async function order(words) {
     const held = {ctrlKey: true, shiftKey: true};
     keyboard('keydown', 'Control', 'ControlLeft');
     keyboard('keydown', 'Shift', 'ShiftLeft');
@@ -118,10 +119,50 @@
     keyboard('keyup', 'Shift', 'ShiftLeft');
     keyboard('keyup', 'Control', 'ControlLeft');
     await rest(5);
-    for (const letter of 'copy link') await key(letter, letter === ' ' ? 'Space' : 'Key' + letter.toUpperCase());
+    for (const letter of words) await key(letter, letter === ' ' ? 'Space' : 'Key' + letter.toUpperCase());
     await key('Enter', 'Enter');
+  }
+
+  const textOf = (blob) => new Promise((resolve) => {
+    const reader = new FileReader();
+    reader.onload = () => resolve(reader.result);
+    reader.readAsDataURL(blob);
+  });
+
+  async function copyLink() {
+    await order('copy link');
     await until('a copied link', () => ask('copied') !== '');
     await rest(10);
+  }
+
+  // Instead of the clipboard, which a browser without a user does not give.
+  async function copyPicture(report) {
+    let copied = null;
+    navigator.clipboard.write = async (items) => { copied = await items[0].getType('image/png'); };
+    await order('copy picture');
+    await until('a copied picture', () => copied !== null);
+    report.copied_picture = await textOf(copied);
+  }
+
+  async function exportPicture(report) {
+    await order('export figure.png');
+    await until('a download', () => downloads.length > 0);
+    report.exported_picture = await textOf(await (await fetch(downloads[0].address)).blob());
+  }
+
+  // The browser's dialog for files, which a user answers at once.
+  async function open(report) {
+    const text = await (await fetch('/dropped.toml')).text();
+    HTMLInputElement.prototype.click = function () {
+      const chosen = new DataTransfer();
+      chosen.items.add(new File([text], 'chosen.toml'));
+      this.files = chosen.files;
+      this.dispatchEvent(new Event('change'));
+    };
+    await click('bar File');
+    await click('menu Open\u2026');
+    await until('the chosen system', () => ask('session').includes('system chosen.toml'));
+    report.chosen = ask('session');
   }
 
   async function exportFigure(report) {
@@ -174,6 +215,9 @@
     if (steps.includes('play')) await play(report);
     if (steps.includes('export')) await exportFigure(report);
     if (steps.includes('drop')) await drop(report);
+    if (steps.includes('open')) await open(report);
+    if (steps.includes('picture')) await exportPicture(report);
+    if (steps.includes('picture')) await copyPicture(report);
     report.link = ask('copied');
     report.session = ask('session');
     report.asks = has('dialog Refuse');
