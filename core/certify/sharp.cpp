@@ -214,7 +214,8 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision, Ce
         if (!prove_other_contacts_stay(variables_, others, e_)) return std::nullopt;
         find_shadow(*time);
         std::optional<Certificate> certificate;
-        if (scope == CertificateScope::decision) certificate = certificate_of(collision, *time, trend);
+        if (scope == CertificateScope::decision && time->half_width() <= truncation_.eps_t)
+            certificate = certificate_of(collision, *time, trend);
         if (!certificate || !holds(*certificate)) {
             sharpen(*time, trend);
             certificate = certificate_of(collision, *time, trend);

@@ -41,7 +41,9 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     shortened_ = 0;
     forget_step();
     const StepFailure failure = flow_->step(request.until);
-    if (failure == StepFailure::none && !is_friction_allowed(flow_->end())) end_where_friction_is_not_allowed();
+    // The end of a step is evaluated at first use, because a flight mostly ends earlier, with an impact.
+    if (failure == StepFailure::none && !surfaces_->varying().empty() && !is_friction_allowed(flow_->end()))
+        end_where_friction_is_not_allowed();
     result_.end = failure != StepFailure::none ? fail(failure) : find_event();
     result_.which = contact_;
     const long evaluations = usual_.evaluations() + (exact_ ? exact_->evaluations() : 0);
