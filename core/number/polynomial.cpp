@@ -75,15 +75,18 @@ Coefficients to_bernstein(const PolynomialTerms& p) {
     return b;
 }
 
-// De Casteljau's algorithm at 1/2: coefficients over the left and the right half. right[i] ends as the last entry of a
-// level.
+// De Casteljau's algorithm at 1/2: coefficients over the left and the right half. A level is computed in vectors of
+// four, and the numbers behind its end are not used.
 void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& right) {
-    right = b;
-    for (int level = 0; level <= degree; ++level) {
-        left[static_cast<std::size_t>(level)] = right[0];
-        for (int i = 0; i < degree - level; ++i)
-            right[static_cast<std::size_t>(i)] =
-                0.5 * (right[static_cast<std::size_t>(i)] + right[static_cast<std::size_t>(i) + 1]);
+    using Four = Pack<double, 4>;
+    std::array<double, Polynomial::capacity + Four::count> level;
+    std::copy(b.begin(), b.end(), level.begin());
+    for (auto last = static_cast<std::size_t>(degree);; --last) {
+        left[static_cast<std::size_t>(degree) - last] = level[0];
+        right[last] = level[last];
+        if (last == 0) break;
+        for (std::size_t i = 0; i < last; i += Four::count)
+            Four::store(0.5 * (Four::load(&level[i]) + Four::load(&level[i + 1])), &level[i]);
     }
 }
 
