@@ -138,6 +138,7 @@ class Dopri5 : public Stepper {
     const State& current_state() override { return end_; }
     void event_function(std::size_t contact, Polynomial& p) const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
+    bool stays_negative(std::size_t contact) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;
     bool is_expansion() const override { return false; }
@@ -392,6 +393,16 @@ double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
 
 double Dopri5::remainder(std::size_t contact, const Polynomial& p) const {
     return own_remainder(contact, p) + earlier_error(contact, p);
+}
+
+// See Stepper. By partial sums (Abel), and by twice the remainder: the function at the end of the step, with which the
+// caller would correct the polynomial, differs from it by less than the remainder.
+bool Dopri5::stays_negative(std::size_t contact) const {
+    Polynomial p;
+    event_function(contact, p);
+    double sum = 0.0, highest = -std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= p.degree; ++k) highest = std::max(highest, sum += p.c[static_cast<std::size_t>(k)]);
+    return highest < -2.0 * remainder(contact, p);
 }
 
 // The errors of the gap and of its rate after a step grow by at most these bounds.
