@@ -27,32 +27,34 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
         trajectory_.passages.reserve(32);
         return;
     }
-    // Capacity for a typical run.
-    trajectory_.events.reserve(64);
-    trajectory_.pieces.reserve(128);
-    trajectory_.coefficients.reserve(8192);
+    // Capacity for a typical run. With less than 128 kB in all, glibc returns no memory to the system between two runs.
+    trajectory_.events.reserve(36);
+    trajectory_.pieces.reserve(80);
+    trajectory_.coefficients.reserve(6144);
 }
 
 namespace {
 
-// Reserves room for `more` elements. Growing a vector briefly needs twice its memory. A large vector therefore reserves
-// address space for all that the run may record; the system provides memory only for pages that are written. With
-// addresses of 32 bits (on a page) there is no such space to spare.
+// Reserves room for `more` elements. The system provides memory only for pages that are written, so a vector grows by a
+// large factor, which copies it rarely. Growing a vector briefly needs the memory of both copies. A large vector
+// therefore reserves address space for all that the run may record; with
+// addresses of 32 bits (on a page) there is none to spare.
 template <class Element>
 void make_room(std::vector<Element>& vector, std::size_t more, double max_bytes) {
     constexpr std::size_t large = std::size_t{8} << 20;  // bytes
     constexpr bool has_space_to_spare = sizeof(void*) >= 8;
     if (vector.capacity() - vector.size() >= more) return;
-    const std::size_t doubled = 2 * vector.size() + more;
-    if (has_space_to_spare && doubled * sizeof(Element) > large && vector.size() * sizeof(Element) < large) {
+    const std::size_t size = vector.size() * sizeof(Element), factor = 4 * size < large ? 4 : 2;
+    const std::size_t enlarged = factor * vector.size() + more;
+    if (has_space_to_spare && enlarged * sizeof(Element) > large && size < large) {
         try {
             constexpr double max_address_space = 1e12;
             const double elements = std::min(max_bytes, max_address_space) / sizeof(Element);
-            return vector.reserve(std::max(doubled, static_cast<std::size_t>(elements) + more));
+            return vector.reserve(std::max(enlarged, static_cast<std::size_t>(elements) + more));
         } catch (const std::bad_alloc&) {  // the process may not have that much address space: grow stepwise
         }
     }
-    vector.reserve(doubled);
+    vector.reserve(enlarged);
 }
 
 }  // namespace
