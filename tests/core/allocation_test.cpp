@@ -66,8 +66,8 @@ TEST(Allocations, NoneInAStepAfterTheFirstOfItsMode) {
         }
 }
 
-// The heap keeps less than 128 kB that is free at its end; more is returned to the system and obtained again by the next
-// run, which takes a tenth of its time.
+// The heap keeps less than 128 kB that is free at its end. More is returned to the system, and the next run obtains it
+// again, which takes a tenth of its time.
 TEST(Allocations, TypicalRecordsNeedNoMoreMemoryAndStaySmall) {
     for (const char* const system : {"ball_on_sine", "double_pendulum"}) {
         const Allocations found = allocations_of(system, Method::taylor, Recording::full);
