@@ -136,7 +136,7 @@ DroppedOptions parsed(const std::string& command_line) {
     command.add_option("--at", dropped.at);
     command.add_flag("--dark", dropped.dark);
     for (const char* flag : {"--width-mm", "--height-mm", "--font-pt", "--dpi", "--size", "--scale", "--columns",
-                             "--format", "--fps", "--speed", "--camera", "--record"})
+                             "--format", "--fps", "--speed", "--camera", "--turn", "--record"})
         command.add_option(flag, ignored);
     std::reverse(words.begin(), words.end());  // CLI11 expects reverse order
     try {

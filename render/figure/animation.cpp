@@ -109,14 +109,14 @@ StillAreas still_areas(double shape, std::size_t plots, Rectangle area) {
 }
 
 Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size,
-                     double step, CameraMode camera)
+                     double step, CameraMode camera, const std::optional<ViewAngles>& direction)
     : trajectory_(trajectory),
       horizon_(horizon_before_end(trajectory, estimate_error(trajectory))),
       size_(size),
       decimals_(decimals_for(step)),
       sampler_(trajectory),
       samples_(plot_samples(trajectory)),
-      mechanism_(*trajectory.model),
+      mechanism_(*trajectory.model, direction),
       stage_(mechanism_, trajectory, samples_),
       camera_(camera) {
     for (const ViewDescription& view : views) views_.emplace_back(*trajectory.model, view);

@@ -53,9 +53,10 @@ std::string to_text(const AnimationFrame& still);
 class Animation {
  public:
     // Keeps a reference to the trajectory. `step`: time between two frames (s of the run), which decides the digits of
-    // the clock. Throws InputError if a view cannot be evaluated.
+    // the clock. `direction`: from where a system in space is seen; empty: as its file draws it. Throws InputError if a
+    // view cannot be evaluated.
     Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size, double step,
-              CameraMode camera = CameraMode::fit);
+              CameraMode camera = CameraMode::fit, const std::optional<ViewAngles>& direction = {});
     // The frame at time t (s), which must lie within the run.
     AnimationFrame at(double t);
 

@@ -42,15 +42,17 @@ std::optional<Body> Body::of(AnchorPoint& grip, double t, const State& state) {
     body.radius_ = here.radius;
     const auto n = state.q.size();
     body.jx_ = body.jy_ = Vector::Zero(n);
+    if (here.depth) body.jz_ = body.jx_;
     for (Eigen::Index i = 0; i < n; ++i) {
         State moved = state;
         const double step = 1e-6 * std::max(1.0, std::abs(state.q[i]));
         moved.q[i] = state.q[i] + step;
-        const Point after = grip.at(t, moved).at;
+        const AnchorPoint::Hold after = grip.at(t, moved);
         moved.q[i] = state.q[i] - step;
-        const Point before = grip.at(t, moved).at;
-        body.jx_[i] = (after.x - before.x) / (2.0 * step);
-        body.jy_[i] = (after.y - before.y) / (2.0 * step);
+        const AnchorPoint::Hold before = grip.at(t, moved);
+        body.jx_[i] = (after.at.x - before.at.x) / (2.0 * step);
+        body.jy_[i] = (after.at.y - before.at.y) / (2.0 * step);
+        if (here.depth) body.jz_[i] = (*after.depth - *before.depth) / (2.0 * step);
     }
     if (!body.jx_.allFinite() || !body.jy_.allFinite()) return std::nullopt;
     return body;
@@ -59,6 +61,12 @@ std::optional<Body> Body::of(AnchorPoint& grip, double t, const State& state) {
 Point Body::velocity(const Vector& v) const { return {jx_.dot(v), jy_.dot(v)}; }
 
 std::optional<Point> Body::force(const Vector& Q) const {
+    if (jz_.size() > 0) {
+        Eigen::MatrixXd slope(Q.size(), 3);
+        slope << jx_, jy_, jz_;
+        const Eigen::VectorXd F = least_solution(slope, Eigen::VectorXd(Q));
+        return F.allFinite() ? std::optional(Point{F[0], F[1]}) : std::nullopt;
+    }
     const Eigen::Vector2d F = solved(gram(jx_, jy_), {jx_.dot(Q), jy_.dot(Q)});
     const Vector rest = Q - F[0] * jx_ - F[1] * jy_;
     if (!(rest.norm() <= 1e-5 * Q.norm())) return std::nullopt;

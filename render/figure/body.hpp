@@ -43,6 +43,7 @@ class Body {
     Point at_;
     double radius_ = 0.0;
     Vector jx_, jy_;  // rows of J
+    Vector jz_;       // in space: that of the depth; else empty
 };
 
 // Coordinates that move the body to `place` at time t, starting from those of `state` (Gauss-Newton, each step nearer

@@ -43,24 +43,22 @@ const DrawnShape* line_through(const std::vector<DrawnShape>& shapes, const std:
     return nullptr;
 }
 
-// Smallest displacement of a disc that gives it the wanted distance from every gap. It is found by relaxation, with a
-// limit on the rounds because walls may leave no space.
-Point min_way(const std::vector<std::pair<Point, double>>& wanted) {
+}  // namespace
+
+// It is found by relaxation, with a limit on the rounds because walls may leave no space.
+Eigen::Vector3d min_way(const std::vector<std::pair<Eigen::Vector3d, double>>& wanted) {
     constexpr int rounds = 60;
     std::vector<double> pushes(wanted.size(), 0.0);
-    Point way;
+    Eigen::Vector3d way = Eigen::Vector3d::Zero();
     for (int round = 0; round < (wanted.size() == 1 ? 1 : rounds); ++round)
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             const auto& [away, length] = wanted[i];
-            const double push = std::max(0.0, pushes[i] + length - (away.x * way.x + away.y * way.y));
-            way.x += (push - pushes[i]) * away.x;
-            way.y += (push - pushes[i]) * away.y;
+            const double push = std::max(0.0, pushes[i] + length - away.dot(way));
+            way += (push - pushes[i]) * away;
             pushes[i] = push;
         }
     return way;
 }
-
-}  // namespace
 
 std::optional<Nearness> ContactGeometry::nearness(AnchorPoint& grip, std::size_t contact, double t,
                                                   const State& state) const {
@@ -234,16 +232,16 @@ void ContactGeometry::rest(Drawing& drawing, double t, const State& state) const
     for (const Disc& disc : discs_) {
         AnchorPoint grip = disc.grip;
         const double radius = grip.at(t, state).radius;
-        std::vector<std::pair<Point, double>> wanted;
+        std::vector<std::pair<Eigen::Vector3d, double>> wanted;
         for (const std::size_t contact : disc.contacts)
             if (const auto near = nearness(grip, contact, t, state)) {
                 const double far = std::max(0.0, near->distance) / (2.0 * radius);
-                wanted.emplace_back(near->away, radius * std::exp(-far * far));
+                wanted.emplace_back(Eigen::Vector3d(near->away.x, near->away.y, 0.0), radius * std::exp(-far * far));
             }
-        const Point way = min_way(wanted);
+        const Eigen::Vector3d way = min_way(wanted);
         for (DrawnShape& shape : drawing.shapes)
             if (shape.item == disc.item && shape.kind == DrawnShape::Kind::disc)
-                shape.points[0] = {shape.points[0].x + way.x, shape.points[0].y + way.y};
+                shape.points[0] = {shape.points[0].x + way.x(), shape.points[0].y + way.y()};
     }
 }
 

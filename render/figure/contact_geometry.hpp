@@ -10,8 +10,10 @@
 // displacement that satisfies all of them is used.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "figure/field.hpp"
@@ -26,6 +28,9 @@ struct Nearness {
     Point away;             // unit vector along dh/dp, out of the solid
     Point foot;             // foot of the perpendicular, on h = 0
 };
+
+// Smallest displacement of a body that moves it, along every one of these unit vectors, at least this far.
+Eigen::Vector3d min_way(const std::vector<std::pair<Eigen::Vector3d, double>>& wanted);
 
 // Evaluates its programs, so use one per thread.
 class ContactGeometry {

@@ -132,11 +132,36 @@ std::vector<FrictionMarks::Mark> FrictionMarks::at(const Sample& now) {
     return marks;
 }
 
+// The whole force of a contact, and a little below the contact, or of a joint, its friction alone.
+std::vector<FrictionMarks::ForceArrow> FrictionMarks::arrows_of(const Mark& mark, double side) const {
+    constexpr double least = 0.02;  // fraction of the largest force: a shorter arrow is not drawn
+    const double scale = longest * side / strongest_, below = 0.014 * side;
+    std::vector<ForceArrow> arrows;
+    if (!is_joint(mark.which) && std::hypot(mark.pressing, mark.friction) > least * strongest_)
+        arrows.push_back({mark.which, mark.at, mark.tip(scale)});
+    const Point foot = is_joint(mark.which) ? mark.at : moved(mark.at, -below, mark.normal);
+    if (std::abs(mark.friction) > least * strongest_)
+        arrows.push_back({mark.which, foot, moved(foot, scale * mark.friction, mark.tangent)});
+    return arrows;
+}
+
+namespace {
+
+double smaller_side(const Drawing& seen) { return std::min(seen.x_high - seen.x_low, seen.y_high - seen.y_low); }
+
+}  // namespace
+
+std::vector<FrictionMarks::ForceArrow> FrictionMarks::arrows(const Drawing& seen, const Sample& now) {
+    std::vector<ForceArrow> all;
+    if (!(strongest_ > 0.0)) return all;
+    for (const Mark& mark : at(now))
+        for (const ForceArrow& arrow : arrows_of(mark, smaller_side(seen))) all.push_back(arrow);
+    return all;
+}
+
 void FrictionMarks::add(Drawing& drawing, const Sample& now, const Theme& theme) {
     if (!(strongest_ > 0.0)) return;
-    const double side = std::min(drawing.x_high - drawing.x_low, drawing.y_high - drawing.y_low);
-    const double scale = longest * side / strongest_, head = 0.022 * side, below = 0.014 * side;
-    constexpr double least = 0.02;  // fraction of the largest force: a shorter arrow is not drawn
+    const double side = smaller_side(drawing), scale = longest * side / strongest_, head = 0.022 * side;
     for (const Mark& mark : at(now)) {
         const Color color = phase_color(theme, mark.look);
         const Stroke stroke{color, 2.0, {}};
@@ -152,12 +177,8 @@ void FrictionMarks::add(Drawing& drawing, const Sample& now, const Theme& theme)
             if (is_joint(mark.which)) cone.stroke.color = tinted(color, theme.background, 0.5);
             cone.moves = true;
         }
-        const bool has_friction = std::abs(mark.friction) > least * strongest_;
-        if (!is_joint(mark.which) && std::hypot(mark.pressing, mark.friction) > least * strongest_)
-            add_arrow(drawing, mark.at, mark.tip(scale), head, stroke, theme.background);
-        const Point foot = is_joint(mark.which) ? mark.at : moved(mark.at, -below, mark.normal);
-        if (has_friction)
-            add_arrow(drawing, foot, moved(foot, scale * mark.friction, mark.tangent), head, stroke, theme.background);
+        for (const ForceArrow& arrow : arrows_of(mark, side))
+            add_arrow(drawing, arrow.from, arrow.to, head, stroke, theme.background);
     }
 }
 

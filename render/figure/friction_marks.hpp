@@ -35,6 +35,12 @@ class FrictionMarks {
         Point tip(double scale) const;  // of the force
     };
     std::vector<Mark> at(const Sample& now);
+    // An arrow as it is drawn in the visible part of the world.
+    struct ForceArrow {
+        std::size_t which = 0;  // contact or joint
+        Point from, to;
+    };
+    std::vector<ForceArrow> arrows(const Drawing& seen, const Sample& now);
     // The largest force of the run; 0 if no mark can be drawn.
     double strongest() const { return strongest_; }
     // Appends the marks to a drawing. The largest force of the run is as long as this fraction of the smaller side.
@@ -42,6 +48,7 @@ class FrictionMarks {
     void add(Drawing& drawing, const Sample& now, const Theme& theme);
 
  private:
+    std::vector<ForceArrow> arrows_of(const Mark& mark, double side) const;
     std::optional<Mark> of_contact(std::size_t contact, const Sample& now);
     std::optional<Mark> of_joint(std::size_t joint, const Sample& now);
 

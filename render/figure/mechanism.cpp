@@ -191,7 +191,8 @@ bool names_what_moves(const SystemDescription& description, std::string_view tex
 
 }  // namespace
 
-Mechanism::Mechanism(const Model& model) : model_(model), start_(model.default_run()) {
+Mechanism::Mechanism(const Model& model, const std::optional<ViewAngles>& direction)
+    : model_(model), start_(model.default_run()) {
     const SystemDescription& description = model.description();
     for (const DrawingDescription& drawing : drawings_of(description)) {
         Item item;
@@ -206,6 +207,10 @@ Mechanism::Mechanism(const Model& model) : model_(model), start_(model.default_r
         return description.coordinates.size() == 2 && description.coordinates[i].name == name;
     };
     plane_ = items_.empty() && named(0, "x") && named(1, "y");
+    if ((!direction && !items_.empty()) || !SpaceView::shows(model)) return;
+    space_.emplace(model, direction.value_or(ViewAngles{}));
+    if (const Item* held = body(); held != nullptr && is_round(held->description.shape)) ball_ = *held;
+    items_.clear();
 }
 
 Mechanism::EvaluatedDrawing Mechanism::place(const Item& item, Evaluator<double>& run, double t, const State& state,
@@ -259,7 +264,11 @@ std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& 
 }
 
 AnchorPoint::Hold AnchorPoint::at(double t, const State& state) {
-    if (!run_) return {{state.q[0], state.q[1]}, 0.0};
+    if (space_) {
+        const SpaceView::Place seen = space_->seen(space_->place(state.q));
+        return {{seen.x(), seen.y()}, radius_, seen.z()};
+    }
+    if (!run_) return {{state.q[0], state.q[1]}, 0.0, {}};
     set_state(*run_, state);
     run_->input(t_) = t;
     run_->run();
@@ -272,11 +281,12 @@ AnchorPoint::Hold AnchorPoint::at(double t, const State& state) {
         const Point from = corner(material_->corner), a = corner(material_->ends[0]), b = corner(material_->ends[1]);
         const auto [s, u] = material_->shares;
         return {{from.x + s * (a.x - from.x) + u * (b.x - from.x), from.y + s * (a.y - from.y) + u * (b.y - from.y)},
-                0.0};
+                0.0,
+                {}};
     }
     double radius = sizes_ > 0 ? run_->output(2) : 0.0;
     if (sizes_ > 1) radius = 0.5 * std::min(radius, run_->output(3));
-    return {{run_->output(first_), run_->output(first_ + 1)}, radius};
+    return {{run_->output(first_), run_->output(first_ + 1)}, radius, {}};
 }
 
 // The body, which the mouse drags first; null if only texts, curves and connecting parts move. The drawing of a contact
@@ -296,6 +306,12 @@ const Mechanism::Item* Mechanism::body() const {
 
 std::optional<AnchorPoint> Mechanism::grip(std::span<const double> parameters) const {
     if (plane_) return AnchorPoint();
+    if (space_) {
+        AnchorPoint grip;
+        grip.space_ = space_;
+        grip.radius_ = ball_radius(parameters);
+        return grip;
+    }
     const Item* held = body();
     if (held == nullptr) return std::nullopt;
     return grip_of(*held, held->description.points.size() - 1, parameters);
@@ -441,6 +457,27 @@ void Mechanism::add_plane(Drawing& drawing, double t, const State& state, std::s
     disc.fill = true;
 }
 
+// The radius of the ball at the start: a drawing may change it with the height, to suggest a depth that it lacks.
+double Mechanism::ball_radius(std::span<const double> parameters) const {
+    if (!ball_) return 0.0;
+    Evaluator<double> run = model_.evaluator(ball_->program, parameters);
+    return place(*ball_, run, start_.options.start_time, {start_.q, start_.v}).radius;
+}
+
+void Mechanism::add_ball(Drawing& drawing, const State& state, std::span<const double> parameters, const Theme& theme,
+                         Mode mode) const {
+    const bool has_color = ball_ && !ball_->description.color.empty();
+    const Color color = has_color ? on_theme(color_of(ball_->description.color), theme) : theme.body;
+    const SpaceView::Place seen = space_->seen(space_->place(state.q));
+    const double radius = ball_radius(parameters);
+    DrawnShape& ball = add(drawing, DrawnShape::Kind::disc, color, 2.0);
+    ball.moves = true;
+    ball.points = {{seen.x(), seen.y()}};
+    ball.radius = radius > 0.0 ? radius : 0.02 * drawing.size;
+    ball.fill = !ball_ || ball_->description.fill;
+    if (!mode.held().empty()) light(ball, phase_color(theme, look_of(model_, mode.held(), mode)));
+}
+
 Drawing Mechanism::draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
                         const Theme& theme, Mode mode, DrawnPart part) const {
     Drawing drawing = limits;
@@ -485,7 +522,9 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         shape.text = d.text;
         shape.radius = placed.radius;
     }
-    if (plane_) {
+    if (space_) {
+        add_ball(drawing, state, parameters, theme, mode);
+    } else if (plane_) {
         add_plane(drawing, t, state, parameters, theme);
     } else if (items_.empty() && all) {
         DrawnShape& note = add(drawing, DrawnShape::Kind::text, theme.surface, 1.0);
@@ -495,7 +534,21 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
     return drawing;
 }
 
+// A square that holds the run whatever the direction, so that nothing grows or shrinks while it is turned.
+Drawing Mechanism::limits_in_space(std::span<const Sample> samples) const {
+    const SpaceBox box(*space_, samples);
+    const SpaceView::Place middle = space_->seen(box.middle);
+    constexpr double room = 1.05;
+    const double reach = room * box.half.norm();
+    Drawing drawing;
+    drawing.size = box.size();
+    drawing.x_low = middle.x() - reach, drawing.x_high = middle.x() + reach;
+    drawing.y_low = middle.y() - reach, drawing.y_high = middle.y() + reach;
+    return drawing;
+}
+
 Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> samples) const {
+    if (space_) return limits_in_space(samples);
     BoundingBox box;
     const std::size_t stride = 1 + samples.size() / 1000;
     if (plane_)

@@ -10,6 +10,7 @@
 
 #include "figure/figure.hpp"
 #include "figure/palette.hpp"
+#include "figure/space_view.hpp"
 #include "model/model.hpp"
 #include "simulate/sampler.hpp"
 
@@ -29,7 +30,8 @@ class AnchorPoint {
  public:
     struct Hold {
         Point at;
-        double radius = 0.0;  // of the disc, or of the largest disc in the box; 0 for a point of a line
+        double radius = 0.0;            // of the disc, or of the largest disc in the box; 0 for a point of a line
+        std::optional<double> depth{};  // of a system in space: toward the viewer
     };
     Hold at(double t, const State& state);
 
@@ -40,13 +42,16 @@ class AnchorPoint {
     std::size_t first_ = 0;                  // output slot of the point's x
     std::size_t sizes_ = 0;                  // number of size outputs after the point: a radius, or width and height
     std::optional<MaterialPoint> material_;  // in place of that point; with sizes, of a box
+    std::optional<SpaceView> space_;         // in place of the program
+    double radius_ = 0.0;                    // in space
 };
 
 class Mechanism {
  public:
     // Compiles every [[drawing]]. A file without any gets a disc and the zero line of the gap if its coordinates are x
     // and y, else a note. Throws InputError for an invalid expression. Keeps a reference to the model.
-    explicit Mechanism(const Model& model);
+    // A system in space (SpaceView::shows) is drawn as it is seen from `direction`, or if it has no drawing.
+    explicit Mechanism(const Model& model, const std::optional<ViewAngles>& direction = {});
 
     // The shapes at a time and a state. Curves are smooth within `limits`, the visible part (see limits()). Shapes that
     // belong to a held contact are highlighted in its color (phase_color); if none belongs to it, the body (grip()) is
@@ -73,7 +78,9 @@ class Mechanism {
     // Index among the file's drawings, center and radius of every moving disc that is not itself a contact surface.
     std::vector<std::pair<std::size_t, AnchorPoint>> discs(std::span<const double> parameters) const;
     // Whether the drawing has only a note that there is nothing to draw.
-    bool is_empty() const { return items_.empty() && !plane_; }
+    bool is_empty() const { return items_.empty() && !plane_ && !space_; }
+    // The projection of a system in space; null if the drawing of the file is shown.
+    const SpaceView* space() const { return space_ ? &*space_ : nullptr; }
 
  private:
     struct Item {
@@ -94,11 +101,17 @@ class Mechanism {
     const Item* body() const;
     void add_plane(Drawing& drawing, double t, const State& state, std::span<const double> parameters,
                    const Theme& theme) const;
+    void add_ball(Drawing& drawing, const State& state, std::span<const double> parameters, const Theme& theme,
+                  Mode mode) const;
+    double ball_radius(std::span<const double> parameters) const;
+    Drawing limits_in_space(std::span<const Sample> samples) const;
 
     const Model& model_;
     Run start_;  // as in the file: springs and dampers are at rest there
     std::vector<Item> items_;
     bool plane_ = false;  // no drawing, but coordinates x and y
+    std::optional<SpaceView> space_;
+    std::optional<Item> ball_;  // in space: the disc of the file that moves
 };
 
 // ---- curves refined to the picture: dense in the visible part, coarse elsewhere ----

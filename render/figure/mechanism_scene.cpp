@@ -26,15 +26,26 @@ void put_under_what_moves(std::vector<DrawnShape>& shapes, const std::vector<Dra
     shapes.insert(first, more.begin(), more.end());
 }
 
-// Makes a disc as large as the picture transparent: the closer the view, the more of the disc is only its rim.
+// The radius of a disc; of a box or polygon, that of a disc as wide and high on average.
+double radius_of(const DrawnShape& shape) {
+    if (shape.kind == DrawnShape::Kind::disc) return shape.radius;
+    const auto [left, right] = std::minmax_element(shape.points.begin(), shape.points.end(),
+                                                   [](const Point& a, const Point& b) { return a.x < b.x; });
+    const auto [low, high] = std::minmax_element(shape.points.begin(), shape.points.end(),
+                                                 [](const Point& a, const Point& b) { return a.y < b.y; });
+    return shape.points.empty() ? 0.0 : 0.25 * (right->x - left->x + high->y - low->y);
+}
+
+// Makes a body as large as the picture transparent: the closer the view, the more of it is only its outline.
 void thin_out_large(std::vector<DrawnShape>& shapes, const Drawing& seen) {
     constexpr double large = 0.4, huge = 1.2;  // radius as a fraction of the picture's smaller side
     constexpr double least = 26.0, rim = 2.0;
     const double size = std::min(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
     for (DrawnShape& shape : shapes) {
-        if (shape.kind != DrawnShape::Kind::disc || !shape.moves || !shape.fill || !(shape.radius > large * size))
-            continue;
-        const double s = std::min(1.0, (shape.radius / size - large) / (huge - large));
+        const bool is_filled = shape.kind == DrawnShape::Kind::disc || shape.closed;
+        const double radius = is_filled && shape.moves && shape.fill ? radius_of(shape) : 0.0;
+        if (!(radius > large * size)) continue;
+        const double s = std::min(1.0, (radius / size - large) / (huge - large));
         shape.fill_color.a = static_cast<std::uint8_t>(255.0 + s * (least - 255.0));
         shape.stroke.width = std::max(shape.stroke.width, rim);
     }
@@ -52,7 +63,10 @@ MechanismScene::MechanismScene(const Mechanism& mechanism, const Trajectory& tra
       touch_(mechanism, trajectory, limits_.size),
       camera_(mechanism, touch_, trajectory, samples, trail_, limits_),
       unit_(length_unit(trajectory.model->description())) {
-    if (trajectory.model->has_friction()) friction_.emplace(mechanism, trajectory, touch_, samples);
+    if (mechanism.space() != nullptr)
+        surfaces_.emplace(*trajectory.model, trajectory.run.parameters, *mechanism.space(), samples);
+    else if (trajectory.model->has_friction())
+        friction_.emplace(mechanism, trajectory, touch_, samples);
     find_poses();
 }
 
@@ -162,22 +176,28 @@ Point MechanismScene::rest_below(const Sample& now, const Drawing& seen, AnchorP
     return aside;
 }
 
+void MechanismScene::rest(Drawing& drawing, double t, const State& state) const {
+    surfaces_ ? surfaces_->rest(drawing, t, state) : touch_.rest(drawing, t, state);
+}
+
 Drawing MechanismScene::draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers) {
     const auto& parameters = trajectory_.run.parameters;
     Drawing drawing = mechanism_.draw(now.t, now.state, parameters, seen, theme, now.mode);
-    touch_.rest(drawing, now.t, now.state);
+    rest(drawing, now.t, now.state);
     thin_out_large(drawing.shapes, seen);
     touch_.add_ground(drawing, now.t, now.state, now.mode, theme);
+    if (surfaces_) surfaces_->add(drawing, now, theme);
     if (layers.way) add_body_trail(drawing.shapes, way(now, seen), now.t, theme);
     if (layers.strobe)
         for (const Sample& then : poses_)
             if (then.t < now.t) {
                 Drawing there =
                     mechanism_.draw(then.t, then.state, parameters, seen, theme, {}, Mechanism::DrawnPart::moving);
-                touch_.rest(there, then.t, then.state);
+                rest(there, then.t, then.state);
                 put_under_what_moves(drawing.shapes, paled(std::move(there.shapes), pose));
             }
     if (layers.friction && friction_) friction_->add(drawing, now, theme);
+    if (surfaces_) surfaces_->add_axes(drawing, theme);
     return drawing;
 }
 

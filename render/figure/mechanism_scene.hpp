@@ -14,6 +14,7 @@
 #include "figure/contact_geometry.hpp"
 #include "figure/field.hpp"
 #include "figure/friction_marks.hpp"
+#include "figure/space_view.hpp"
 
 namespace achilles {
 
@@ -48,8 +49,15 @@ class MechanismScene {
     // Whether it draws contact forces, in their friction cones.
     bool has_friction_marks() const { return friction_ && friction_->strongest() > 0.0; }
 
+    // The arrows of the forces that it draws in a part of the world.
+    std::vector<FrictionMarks::ForceArrow> force_arrows(const Drawing& seen, const Sample& now) {
+        return friction_ ? friction_->arrows(seen, now) : std::vector<FrictionMarks::ForceArrow>();
+    }
+
     // The mechanism at an instant of the run with the requested layers, in the visible part of the world.
     Drawing draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers);
+    // Moves the discs of a drawing of this mechanism to where they rest.
+    void rest(Drawing& drawing, double t, const State& state) const;
     // Times of the strobe poses, s.
     std::vector<double> poses() const;
 
@@ -68,6 +76,7 @@ class MechanismScene {
     ContactGeometry touch_;
     Camera camera_;
     std::optional<FrictionMarks> friction_;  // only with friction
+    std::optional<SpaceSurfaces> surfaces_;  // only in space
     std::vector<Sample> poses_;
     std::string unit_;
 };

@@ -400,8 +400,17 @@ void paint_shape(const DrawnShape& shape, ImDrawList* list, const Placement& pla
         if (!is_finite(at)) return;
         const auto size = static_cast<float>(world_text_size * scale);
         const float width = label_width(shape.text, size);
-        paint_label(list, static_cast<float>(at.x) - width / 2.0F, static_cast<float>(at.y) - size / 2.0F, shape.text,
-                    shape.stroke.color, size);
+        float left = static_cast<float>(at.x) - width / 2.0F, top = static_cast<float>(at.y) - size / 2.0F;
+        // A note beside the mechanism stays whole where a large text would be cut at the edge of the picture.
+        const ImVec2 low = list->GetClipRectMin(), high = list->GetClipRectMax();
+        const double line = 1.2 * double{size};
+        const bool is_seen =
+            at.x > double{low.x} && at.x < double{high.x} && at.y > double{low.y} && at.y < double{high.y};
+        if (!shape.moves && is_seen && width < high.x - low.x && line < double{high.y - low.y}) {
+            left = std::clamp(left, low.x, high.x - width);
+            top = std::clamp(top, low.y, high.y - static_cast<float>(line));
+        }
+        paint_label(list, left, top, shape.text, shape.stroke.color, size);
         return;
     }
     const Clip clip = clip_of(list);

@@ -33,6 +33,7 @@ struct FramesArguments {
     StillSize size;
     double fps = 30.0, speed = 1.0;
     CameraMode camera = CameraMode::fit;
+    std::optional<ViewAngles> direction;
     int jobs = 1;
     bool overwrite = false;
 };
@@ -189,7 +190,11 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     const Trajectory& trajectory = scenario.trajectory;
     const FrameTimes clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
     check_count(clock);
-    Animation animation(trajectory, scenario.views, arguments.size, arguments.speed / arguments.fps, arguments.camera);
+    if (arguments.direction && !SpaceView::shows(*trajectory.model))
+        throw InputError("--turn", {}, "the mechanism of this system lies in a plane and cannot be turned",
+                         "leave --turn out");
+    Animation animation(trajectory, scenario.views, arguments.size, arguments.speed / arguments.fps, arguments.camera,
+                        arguments.direction);
     const std::vector<PictureRun> shown{{arguments.system, &trajectory}};
     int status = reached_end;
     if (job.reproduces()) {
@@ -230,6 +235,14 @@ double within(const std::string& option, const std::string& text, double low, do
     return number;
 }
 
+ViewAngles direction_from(const std::string& text) {
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos)
+        throw InputError("--turn " + text, {}, "two angles are needed, in degrees", "write --turn 30,45");
+    return {within("--turn", text.substr(0, comma), -360.0, 360.0),
+            within("--turn", text.substr(comma + 1), -90.0, 90.0)};
+}
+
 }  // namespace
 
 void add_frames(CLI::App& program, int& status, PictureJob& job) {
@@ -260,6 +273,11 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
             "--camera", [arguments](const std::string& text) { arguments->camera = camera_from(text); },
             "camera: fit (the whole run, the default), follow (the body), zeno (zooms in on a Zeno point)")
         ->type_name("fit|follow|zeno");
+    command
+        ->add_option_function<std::string>(
+            "--turn", [arguments](const std::string& text) { arguments->direction = direction_from(text); },
+            "direction from which a system in space is seen, degrees: about the vertical, and its tilt")
+        ->type_name("ABOUT,TILT");
     command
         ->add_option_function<std::string>(
             "--jobs", [arguments](const std::string& text) { arguments->jobs = jobs_from(text); },
