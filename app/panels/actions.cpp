@@ -137,6 +137,7 @@ bool is_idle(const Session& session) { return session.under_way() == nullptr; }
 bool can_undo(const Session& session) { return session.can_undo(); }
 bool can_redo(const Session& session) { return session.can_redo(); }
 bool has_look(const Session& session) { return session.scene().look().has_value(); }
+bool is_turned(const Session& session) { return session.scene().direction().has_value(); }
 
 constexpr unsigned new_group = Action::group, not_in_text = Action::not_typing, of_player = Action::player,
                    held_too = Action::repeats, as_submenu = Action::submenu, on_desktop = Action::desktop;
@@ -183,6 +184,7 @@ constexpr Action all_actions[] = {
     {"View", "Configuration plane", "", "two quantities in place of the mechanism", "show plane"},
     {"View", "Energy", "", "where the energy is and where it went", "show energy"},
     {"View", "Fit whole run", "", "the camera shows the whole run", "look all", 0, has_look},
+    {"View", "Standard direction", "", "a system in space as its file draws it", "turn default", 0, is_turned},
     {"View", "Lecture", "F11", "a lecture: for a class", "present on", new_group},
     {"View", "Next system", "Down", "next system in a lecture", next_system<1>, of_player, is_lecture},
     {"View", "Previous system", "Up", "next system in a lecture", next_system<-1>, of_player, is_lecture},
@@ -230,7 +232,8 @@ const Shortcut gestures[] = {
     {"Mechanism", "wheel", "zoom at the mouse"},
     {"Mechanism", "drag a body", "set its start"},
     {"Mechanism", "drag the tip", "set the start's velocity"},
-    {"Mechanism", "drag beside", "move the camera"},
+    {"Mechanism", "drag beside", "pan; turn a system in space"},
+    {"Mechanism", "right drag", "move the camera"},
     {"Mechanism", "double click", "the whole run"},
 };
 

@@ -280,6 +280,12 @@ std::string proof_sentence(const Session& session, const Proof& proof) {
         reach_text(enclosure), enclosure.assumptions);
 }
 
+namespace {
+
+constexpr const char* between_facts = "   \u00b7   ";
+
+}  // namespace
+
 void show_status(const Session& session, const PanelState& state) {
     const Trajectory& trajectory = session.trajectory();
     const Statistics& s = trajectory.statistics;
@@ -321,20 +327,24 @@ void show_status(const Session& session, const PanelState& state) {
         show_legend(session);
         return;
     }
-    const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
+    const std::string seconds = state.in_window ? fmt::format("{:.1f} ms{}", s.seconds * 1e3, between_facts) : "";
     const std::string gap = session.model()->contacts() == 0
                                 ? ""
-                                : "   \u00b7   minimum gap " +
+                                : std::string(between_facts) + "minimum gap " +
                                       with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff()));
     const std::string text = fmt::format(
-        "{}{}   \u00b7   {} steps{}   \u00b7   energy drift {}   \u00b7   {}", seconds, session.sentences().impacts(),
-        s.steps, gap, s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
-        to_text(trajectory.run.options.method));
+        "{}{}{}{} steps{}{}energy drift {}{}{}", seconds, session.sentences().impacts(), between_facts, s.steps, gap,
+        between_facts, s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
+        between_facts, to_text(trajectory.run.options.method));
     const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
-    const bool is_cut = width_of(text) > room;
+    // Whole facts are left out where there is no room; the tooltip has them.
+    std::string shown = text;
+    for (std::size_t end = shown.rfind(between_facts); width_of(shown) > room && end != std::string::npos;
+         end = shown.rfind(between_facts))
+        shown.resize(end);
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    ImGui::TextUnformatted(is_cut ? fitted(text, room).c_str() : text.c_str());
-    if (is_cut) tooltip(text);
+    ImGui::TextUnformatted(fitted(shown, room).c_str());
+    if (shown != text) tooltip(text);
     show_estimate(session);
     ImGui::PopStyleColor();
     show_legend(session);

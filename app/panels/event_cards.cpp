@@ -15,8 +15,8 @@
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "session/certificate_text.hpp"
-#include "simulate/contact_cache.hpp"
-#include "simulate/contact_forces.hpp"
+#include "session/contact_forces_text.hpp"
+#include "session/event_text.hpp"
 #include "simulate/explain.hpp"
 #include "surface/imgui_version.hpp"
 #include "system/units.hpp"
@@ -29,20 +29,22 @@ namespace {
 
 constexpr float value_at = 150.0F, second_at = 270.0F;
 
-ImVec2 at_right(const ImVec2& at, float by) { return {at.x + units(by), at.y}; }
+// Names and their values, row by row.
+class CardRows {
+ public:
+    void operator()(const std::string& name, const std::string& first, const std::string& second = {}) const {
+        table_.next_row();
+        table_.put(name, faint_color());
+        table_.put(first, text_color());
+        if (!second.empty()) table_.put(second, text_color());
+    }
 
-// A name and its values in columns.
-void row(const std::string& name, const std::string& first, const std::string& second = {}) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    cell(at, name, units(value_at - 8.0F), faint_color());
-    cell(at_right(at, value_at), first, units((second.empty() ? second_at + 90.0F : second_at) - value_at - 8.0F),
-         text_color());
-    if (!second.empty()) cell(at_right(at, second_at), second, units(90.0F), text_color());
-    ImGui::Dummy({units(second_at + 90.0F), ImGui::GetTextLineHeight()});
-}
+ private:
+    LineTable table_{"values", {units(value_at), units(second_at - value_at), units(90.0F)}};
+};
 
 // The rates before and after, in display units.
-void show_rates(const Session& session, const Event& event) {
+void show_rates(const Session& session, const Event& event, const CardRows& row) {
     row("", "before", "after");
     const State errors = session.precision().of_state(event.t);
     const auto& coordinates = session.description().coordinates;
@@ -54,39 +56,6 @@ void show_rates(const Session& session, const Event& event) {
             number(event.v_before[at] * factor, errors.v[at] * factor, 6),
             number(event.v_after[at] * factor, errors.v[at] * factor, 6));
     }
-}
-
-// The first inequality that fails, if any.
-std::optional<Inequality> failed(const Certificate& certificate) {
-    for (const Inequality& inequality : certificate.inequalities())
-        if (!(inequality.left < inequality.right)) return inequality;
-    return std::nullopt;
-}
-
-std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once,
-                        const ShownUnit& acceleration) {
-    if (reason.cut)
-        return "The impact sequence is cut here: the error of the motion that follows is certified to be within the "
-               "tolerances. For the bounds see the next event, the Zeno point.";
-    if (!reason.contact || all_at_once)
-        return "Not cut: several contacts take part in this impact, which Moreau's law resolves together.";
-    if (reason.normal_acceleration == 0.0) return "Not cut: nothing presses the body onto the surface here.";
-    if (!(reason.normal_acceleration < 0.0))
-        return fmt::format(
-            "Not cut: the surface falls away here; the gap would open with acceleration {}.",
-            number_with_unit(number(reason.normal_acceleration * acceleration.factor), acceleration.text));
-    if (attempt == nullptr)
-        return fmt::format(
-            "Not cut: nothing can be certified yet; the gap's acceleration may change sign{} before the Zeno point.",
-            several ? ", or another contact may open or close," : "");
-    const std::optional<Inequality> inequality = failed(*attempt);
-    if (!inequality) return "Not cut: this impact came before the conditions were checked.";
-    if (!(inequality->right > 0.0))
-        return fmt::format("Not cut: the {} must be below {}, and its bound is {}.", inequality->name,
-                           number(inequality->right, "{:.3g}"), number(inequality->left, "{:.3g}"));
-    return fmt::format("Not cut: the {} requires {} < {}; the left side is {} times too large.", inequality->name,
-                       number(inequality->left, "{:.3g}"), number(inequality->right, "{:.3g}"),
-                       number(inequality->left / inequality->right, "{:.3g}"));
 }
 
 // Lambda during contact until it reaches zero, and dotted its extrapolation.
@@ -119,38 +88,13 @@ void show_proved(const Session& session, std::size_t event) {
     if (session.enclosed(event) != nullptr) ImGui::TextUnformatted(proved_text(session, event).c_str());
 }
 
-// "Impact of wall, event 7"; without the name if there is only one contact.
-std::string title(const char* kind, const Session& session, const Event& event, std::size_t index) {
-    const std::string contacts = event_contacts_text(session.trajectory(), event);
-    return fmt::format("{}{}{}, event {}", kind, contacts.empty() ? "" : " of ", contacts, index + 1);
-}
-
-std::string time_of(const Session& session, std::size_t event) {
-    return fmt::format("t = {} s",
-                       number(session.trajectory().events[event].t, session.precision().of_event(event), 10));
-}
-
-// Text for systems with several contacts.
-std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {
-    const Model& model = *session.model();
-    std::string text = reason.mode.is_free() ? "No contact is held. "
-                                             : fmt::format("Held: {}. ", joined_names(model, reason.mode.held()));
-    if (!event.opened.empty())
-        text += fmt::format("It opens {}, where the impulse would have to pull. ", joined_names(model, event.opened));
-    if (event.joint && event.joint->order_matters)
-        text += "The order of the impacts matters but is unknown: they are resolved together. ";
-    if (event.joint && event.joint->is_nonunique) text += "The impulses are not unique; this is one choice. ";
-    return text;
-}
-
 }  // namespace
 
 void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(title("Impact", session, event, index), time_of(session, index), state))
+    if (show_card_title(event_title("Impact", session, event, index), event_time_text(session, index), state))
         commands.emplace_back(command::Select{0});
     const ImpactReason reason = explain_impact(session.trajectory(), index);
-    show_rates(session, event);
     const SystemDescription& description = session.description();
     // In the file's units; with several contacts in that of the first impacting one.
     std::size_t first = 0;
@@ -159,20 +103,24 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
         const std::string unit = typeset_unit(unit_of_expression(description, of));
         return unit.empty() ? value : value + " " + unit;
     };
-    const ShownUnit rate = shown_unit(unit_of_expression(description, output_names(description, "gap'")[first]));
-    row("gap speed |h\u0307|", number_with_unit(number(event.impact_speed * rate.factor,
-                                                       session.precision().of_gap_speed(index) * rate.factor, 9),
-                                                rate.text));
-    const double error = session.precision().of_energy(sample_at(session.trajectory(), event));
-    row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))),
-        number(reason.energy_before, error, 6), number(reason.energy_after, error, 6));
-    const auto energy_row = [&](const char* name, double value) {
-        row(name, with(number(flush_noise_to_zero(value, std::abs(reason.energy_before)), error, 6), "energy"));
-    };
     const bool several = session.model()->contacts() > 1, has_friction = session.model()->has_friction();
-    const double heat = has_friction ? Slips(session.trajectory()).heat_of_impact(event) : 0.0;
-    energy_row("energy lost", reason.energy_before - reason.energy_after - heat);
-    if (has_friction) energy_row("heat of friction", heat);
+    {
+        const CardRows row;
+        show_rates(session, event, row);
+        const ShownUnit rate = shown_unit(unit_of_expression(description, output_names(description, "gap'")[first]));
+        row("gap speed |h\u0307|", number_with_unit(number(event.impact_speed * rate.factor,
+                                                           session.precision().of_gap_speed(index) * rate.factor, 9),
+                                                    rate.text));
+        const double error = session.precision().of_energy(sample_at(session.trajectory(), event));
+        row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))),
+            number(reason.energy_before, error, 6), number(reason.energy_after, error, 6));
+        const auto energy_row = [&](const char* name, double value) {
+            row(name, with(number(flush_noise_to_zero(value, std::abs(reason.energy_before)), error, 6), "energy"));
+        };
+        const double heat = has_friction ? Slips(session.trajectory()).heat_of_impact(event) : 0.0;
+        energy_row("energy lost", reason.energy_before - reason.energy_after - heat);
+        if (has_friction) energy_row("heat of friction", heat);
+    }
     show_proved(session, index);
     std::string words =
         has_friction && !reason.cut
@@ -181,6 +129,7 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
             : why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr,
                           shown_unit(unit_of_expression(description, output_names(description, "gap''")[first])));
     if (several) {
+        const CardRows row;
         for (const auto& [contact, impulse] : Impulses(session.trajectory()).of(index))
             row("impulse on " + description.constraints[contact].name,
                 with(number(impulse), output_names(description, "lambda")[contact] + "*t"));
@@ -191,7 +140,7 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
 
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(title("Release", session, event, index), time_of(session, index), state))
+    if (show_card_title(event_title("Release", session, event, index), event_time_text(session, index), state))
         commands.emplace_back(command::Select{0});
     if (event.ends_latch) {
         show_proved(session, index);
@@ -208,9 +157,12 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
               {room.x + words, room.y, room.width - words, room.height}, units(1.0F));
     double most = 0.0;
     for (const auto& [t, lambda] : reason.force) most = std::max(most, std::abs(lambda));
-    row("\u03bb", number(flush_noise_to_zero(reason.lambda, most), "{:.2g}"));
-    row("\u03bb\u0307", number(reason.lambda_rate));
-    row("h\u2034", number(reason.jerk));
+    {
+        const CardRows row;
+        row("\u03bb", number(flush_noise_to_zero(reason.lambda, most), "{:.2g}"));
+        row("\u03bb\u0307", number(reason.lambda_rate));
+        row("h\u2034", number(reason.jerk));
+    }
     show_proved(session, index);
     paragraph(
         "The contact force \u03bb falls through zero: from here on the surface would have to pull. The gap and its "
@@ -218,35 +170,15 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
         words - units(16.0F), text_color());
 }
 
-namespace {
-
-// The friction force of a contact or joint in a mode, and its largest value: mu lambda, or the level. Static while it
-// sticks.
-struct FrictionShare {
-    double force = 0.0, limit = 0.0;
-};
-
-FrictionShare friction_share(const Trajectory& run, std::size_t which, Mode mode, const State& state) {
-    ContactForces forces(*run.model, run.run.parameters);
-    forces.set(state, mode);
-    const Slip slip = ContactCache(*run.model, run.run).slip(which, state);
-    const double pressing = is_joint(which) ? 1.0 : forces.force(which);
-    return {forces.friction_force(which),
-            pressing * (slip_sign(mode.state(which)) == 0 ? slip.static_coefficient : slip.coefficient)};
-}
-
-}  // namespace
-
 void show_jump(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Trajectory& run = session.trajectory();
     const Event& event = run.events[index];
-    if (show_card_title(title("Jump", session, event, index), time_of(session, index), state))
+    if (show_card_title(event_title("Jump", session, event, index), event_time_text(session, index), state))
         commands.emplace_back(command::Select{0});
-    row("", "before", "after");
     const SystemDescription& description = session.description();
     const State errors = session.precision().of_state(event.t);
-    const auto rows = [&](const char* prime, const Vector& before, const Vector& after, const Vector& error,
-                          const char* unit) {
+    const auto rows = [&](const CardRows& row, const char* prime, const Vector& before, const Vector& after,
+                          const Vector& error, const char* unit) {
         for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
             const auto at = static_cast<Eigen::Index>(i);
             if (before[at] == after[at]) continue;
@@ -256,14 +188,18 @@ void show_jump(const Session& session, std::size_t index, PanelState& state, Com
                 number(before[at] * factor, error[at] * factor, 6), number(after[at] * factor, error[at] * factor, 6));
         }
     };
-    rows("", event.q_before(), event.q, errors.q, " [\u00b0]");
-    rows("'", event.v_before, event.v_after, errors.v, " [\u00b0/s]");
+    {
+        const CardRows row;
+        row("", "before", "after");
+        rows(row, "", event.q_before(), event.q, errors.q, " [\u00b0]");
+        rows(row, "'", event.v_before, event.v_after, errors.v, " [\u00b0/s]");
+    }
     paragraph(session.sentences().of(index) + ".", remaining().width, text_color());
 }
 
 void show_pass(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(title("Pass", session, event, index), time_of(session, index), state))
+    if (show_card_title(event_title("Pass", session, event, index), event_time_text(session, index), state))
         commands.emplace_back(command::Select{0});
     paragraph(
         "The gap falls through zero where 'when' of this contact is not positive: no impact. The contact does not "
@@ -277,24 +213,27 @@ void show_friction(const Session& session, std::size_t index, PanelState& state,
     const char* const kind = event.kind == Event::Kind::stick  ? "Stick"
                              : event.kind == Event::Kind::slip ? "Start of slip"
                                                                : "Reversal of slip";
-    if (show_card_title(title(kind, session, event, index), time_of(session, index), state))
+    if (show_card_title(event_title(kind, session, event, index), event_time_text(session, index), state))
         commands.emplace_back(command::Select{0});
     const SystemDescription& description = session.description();
     const std::vector<SlidingPlace> places = sliding_places(description);
     const std::vector<std::string> names = sliding_names(description, "friction_force");
     const Mode before = mode_before(run, index);
-    row("", "before", "after");
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const std::size_t which = places[i].number;
-        if (!event.contacts.contains(which)) continue;
-        const FrictionShare first = friction_share(run, which, before, {event.q, event.v_before, event.t}),
-                            then = friction_share(run, which, event.mode, {event.q, event.v_after, event.t});
-        const double size = std::max(first.limit, then.limit);
-        const auto shown = [&](double value) { return number(flush_noise_to_zero(value, size), "{:.5g}"); };
-        const std::string unit = typeset_unit(unit_of_expression(description, names[i]));
-        row(with_unit(places.size() > 1 ? "friction of " + places[i].name : "friction force", unit), shown(first.force),
-            shown(then.force));
-        if (!places[i].never_slides) row(with_unit("its limit", unit), shown(first.limit), shown(then.limit));
+    {
+        const CardRows row;
+        row("", "before", "after");
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const std::size_t which = places[i].number;
+            if (!event.contacts.contains(which)) continue;
+            const FrictionShare first = friction_share(run, which, before, {event.q, event.v_before, event.t}),
+                                then = friction_share(run, which, event.mode, {event.q, event.v_after, event.t});
+            const double size = std::max(first.limit, then.limit);
+            const auto shown = [&](double value) { return number(flush_noise_to_zero(value, size), "{:.5g}"); };
+            const std::string unit = typeset_unit(unit_of_expression(description, names[i]));
+            row(with_unit(places.size() > 1 ? "friction of " + places[i].name : "friction force", unit),
+                shown(first.force), shown(then.force));
+            if (!places[i].never_slides) row(with_unit("its limit", unit), shown(first.limit), shown(then.limit));
+        }
     }
     const std::string words = session.sentences().of(index);
     paragraph(has_several_places(*session.model()) ? words + "." : "It " + words + ".", remaining().width,
@@ -431,10 +370,11 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
 
 void show_collapse(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(title("Collapse", session, event, index), time_of(session, index), state))
+    if (show_card_title(event_title("Collapse", session, event, index), event_time_text(session, index), state))
         commands.emplace_back(command::Select{0});
     if (event.collapse_info) {
         const auto& constraints = session.description().constraints;
+        const CardRows row;
         for (const auto& [contact, impulse] : event.collapse_info->impulses)
             row("impulse of " + constraints[contact].name, number(impulse, "{:.5g}"));
     }

@@ -259,7 +259,7 @@ void show_list(const Session& session, ImVec2 size, PanelState& state, Commands&
     const float line = ImGui::GetTextLineHeightWithSpacing();  // height of whole rows
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
     ImGui::BeginChild("rows", {0.0F, room}, false);
-    const EventRows all(session, state);
+    const EventRows all(session, state.show_impacts, state.unfolded);
     const int present = reached(session), seen = session.selected() > 0 ? session.selected() - 1 : present;
     // At the end of the run its last row is highlighted instead of an event.
     const bool is_over = session.selected() == 0 && session.time() >= session.trajectory().end_time;

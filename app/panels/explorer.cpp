@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "panels/actions.hpp"
-#include "panels/arrangement.hpp"
 #include "panels/widgets.hpp"
+#include "session/arrangement.hpp"
 #include "session/history.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

@@ -1,6 +1,6 @@
 // The mechanism view: the mechanism at the current time with trail, velocity and contact force. The wheel zooms,
-// dragging the background pans, a double click fits. Dragging any point of a body changes the initial position,
-// dragging the tip of the velocity arrow the initial velocity.
+// dragging the background pans or turns a system in space, a double click fits. Dragging any point of a body changes
+// the initial position, dragging the tip of the velocity arrow the initial velocity.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,138 +14,14 @@
 #include "figure/label.hpp"
 #include "figure/mechanism_scene.hpp"
 #include "paint/paint.hpp"
+#include "panels/mechanism_line.hpp"
 #include "panels/widgets.hpp"
 #include "session/contact_forces_text.hpp"
+#include "session/mechanism_view.hpp"
 
 namespace achilles {
 
-// ---- view: camera, its menu, scale bar ----
-
-// Length of the longest arrow of a run, as a share of the picture's smaller side.
-constexpr double longest_arrow = 0.16;
-
-// Height of the line below the picture: scale bar, layer toggles, camera menu.
-float switches_height();
-// The visible part of the world.
-Drawing seen_world(const Session& session, const Rectangle& area);
-// Shows the menu of cameras with its right end at `right` and returns its left end. A fixed camera keeps the current
-// view, `seen`. The menu has the layers that have no room beside it.
-float show_camera_menu(const Session& session, const Drawing& seen, float right, float y,
-                       const std::vector<const char*>& layers, PanelState& state, Commands& commands);
-// At the left end of the line below the picture, up to `right`.
-void show_scale_bar(const Session& session, const Rectangle& line, double unit, float right, PanelState& state);
 // Two side views of a 3D system, beside or above one another. Returns pixels per world unit.
-bool shows_sides(const Session& session);
-double show_sides(const Session& session, const Rectangle& area);
-
-namespace {
-
-constexpr const char* camera_popup = "camera menu";
-constexpr float label_of_scale = 56.0F, min_scale_bar = 34.0F, between_switches = 14.0F;
-
-CameraPicture picture_in(const Session& session, const Rectangle& area) {
-    const double arrow = longest_arrow * std::min(double{area.width}, double{area.height});
-    const auto length = [&](const char* layer) { return session.scene().shows(layer) ? arrow : 0.0; };
-    return {double{area.width}, double{area.height}, length("velocity"), length("force")};
-}
-
-// "24 000", with two digits.
-std::string rounded_count(double value) {
-    const int power = std::max(0, static_cast<int>(std::floor(std::log10(value))));
-    const double digits = std::round(value / std::pow(10.0, power - 1));
-    if (power > 5) return fmt::format("{:.1f}\u00b7{}", 0.1 * digits, power_of_ten(power));
-    std::string text = fmt::format("{:.0f}", digits * std::pow(10.0, power - 1));
-    for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
-        text.insert(static_cast<std::size_t>(at), "\u00a0");
-    return text;
-}
-
-// What the Zeno camera shows, since a picture of two lines does not say it: how much it enlarges, and the bounce.
-std::array<std::string, 2> zeno_words(const Session& session, const Rectangle& world) {
-    const auto view = session.mechanism_scene().camera().zeno_view(session.now(), picture_in(session, world));
-    if (!view) return {"no bounces now: the whole run", ""};
-    const auto length = [&](double value) {
-        return number_with_unit(number(value, "{:.2g}"), session.mechanism_scene().unit());
-    };
-    return {fmt::format("{}{} times enlarged", view->is_inside_body ? "inside the body, " : "",
-                        rounded_count(view->enlargement)),
-            view->is_cut ? fmt::format("the bounces are cut; the last was about {} high", length(view->bounce))
-                         : fmt::format("gap {} in a bounce about {} high", length(view->gap), length(view->bounce))};
-}
-
-}  // namespace
-
-// The state in numbers leaves this height to the picture.
-float least_world() { return units(60.0F); }
-
-float switches_height() { return ImGui::GetTextLineHeight() + units(14.0F); }
-
-Drawing seen_world(const Session& session, const Rectangle& area) {
-    const Scene& scene = session.scene();
-    const double width = double{area.width}, height = double{area.height};
-    if (const auto look = scene.look()) {
-        Drawing drawing = session.limits();
-        const double high = look->width * height / width;
-        drawing.x_low = look->x - 0.5 * look->width, drawing.x_high = look->x + 0.5 * look->width;
-        drawing.y_low = look->y - 0.5 * high, drawing.y_high = look->y + 0.5 * high;
-        return drawing;
-    }
-    const CameraPicture picture = picture_in(session, area);
-    return widened(session.mechanism_scene().camera().at(scene.camera(), session.now(), picture), width, height);
-}
-
-float show_camera_menu(const Session& session, const Drawing& seen, float right, float y,
-                       const std::vector<const char*>& layers, PanelState& state, Commands& commands) {
-    const CameraMode mode = session.scene().camera();
-    const std::string name(to_text(mode));
-    const float height = ImGui::GetTextLineHeight(), width = ImGui::CalcTextSize(name.c_str()).x + units(13.0F);
-    ImGui::SetCursorScreenPos({right - width, y});
-    if (ImGui::InvisibleButton("camera", {width, height})) ImGui::OpenPopup(camera_popup);
-    remember(state, "camera");
-    const bool lit = ImGui::IsItemHovered();
-    tooltip("camera: what this view shows");
-    ImGui::GetWindowDrawList()->AddText({right - width, y}, packed(lit ? text_color() : faint_color()), name.c_str());
-    paint_menu_arrow(right - units(7.0F), std::floor(y + 0.55F * height), lit);
-    if (ImGui::BeginPopup(camera_popup)) {
-        constexpr std::array<std::pair<CameraMode, const char*>, 4> cameras{
-            {{CameraMode::fit, "fit: the whole run"},
-             {CameraMode::fixed, "fixed: the current view"},
-             {CameraMode::follow, "follow: move with the body"},
-             {CameraMode::zeno, "zeno: zoom in on the next Zeno point"}}};
-        for (const auto& [camera, says] : cameras) {
-            const bool chosen = ImGui::MenuItem(says, nullptr, camera == mode);
-            remember(state, std::string("menu ") + says);
-            if (!chosen) continue;
-            if (camera == CameraMode::fixed)
-                commands.emplace_back(command::LookAt{0.5 * (seen.x_low + seen.x_high),
-                                                      0.5 * (seen.y_low + seen.y_high), seen.x_high - seen.x_low});
-            else
-                commands.emplace_back(command::SetCamera{std::string(to_text(camera))});
-        }
-        if (!layers.empty()) ImGui::Separator();
-        for (const char* layer : layers) {
-            const bool shown = session.scene().shows(layer);
-            if (ImGui::MenuItem(layer, nullptr, shown)) commands.emplace_back(command::Show{layer, !shown});
-            remember(state, std::string("show ") + layer);
-        }
-        close_by_escape(state);
-        ImGui::EndPopup();
-    }
-    return right - width;
-}
-
-void show_scale_bar(const Session& session, const Rectangle& line, double unit, float right, PanelState& state) {
-    const float left = line.x + units(12.0F), high = ImGui::GetTextLineHeight(), bottom = line.y + units(5.0F) + high;
-    const double most = std::min<double>(0.22F * line.width, right - left - units(label_of_scale + 8.0F));
-    const double length = paint_scale_bar(ImGui::GetWindowDrawList(), {left, bottom}, most, unit,
-                                          session.mechanism_scene().unit(), faint_color(), double{units(1.0F)});
-    state.places["scale bar"] = {left, bottom - high, static_cast<float>(length), high};
-}
-
-bool shows_sides(const Session& session) {
-    return session.scene().shows("sides") && TwoViews(session.trajectory(), session.samples()).exist();
-}
-
 double show_sides(const Session& session, const Rectangle& area) {
     const TwoViews sides(session.trajectory(), session.samples());
     const std::array<Drawing, 2> limits = sides.limits();
@@ -174,6 +50,9 @@ double show_sides(const Session& session, const Rectangle& area) {
 namespace {
 
 using DragTarget = MechanismDrag::DragTarget;
+
+// The state in numbers leaves this height to the picture.
+float least_world() { return units(60.0F); }
 
 // The arrow, clipped to the area: its head then marks the direction.
 Point inside(const Point& from, const Point& to, const Rectangle& area) {
@@ -215,6 +94,11 @@ struct Picture {
     std::vector<Point> centers;  // pixels
     Point tip;                   // of the velocity arrow, pixels
     double scale = 0.0;          // pixels per unit of velocity
+    struct ForceArrow {
+        Point from, to;                      // pixels
+        std::optional<std::size_t> contact;  // empty: the sum of all contacts
+    };
+    std::vector<ForceArrow> forces;
 };
 
 // Largest velocity and force, for the arrow scale: those of the run or, during a drag, those at its start.
@@ -261,7 +145,10 @@ void add_ghosts(const Session& session, Drawing& drawing) {
         Color color = run_color(session.theme(), pinned.place);
         Drawing ghost = session.mechanism().draw(then.t, then.state, pinned.trajectory->run.parameters, drawing,
                                                  session.theme(), then.mode);
-        pinned.touch->rest(ghost, then.t, then.state);
+        if (session.scene().direction())
+            session.mechanism_scene().rest(ghost, then.t, then.state);
+        else
+            pinned.touch->rest(ghost, then.t, then.state);
         for (DrawnShape& shape : ghost.shapes) {
             const auto is_there = [&](const DrawnShape& other) { return is_same(shape, other); };
             if (shape.kind == DrawnShape::Kind::text ||
@@ -290,9 +177,11 @@ void paint_arrows(const Session& session, const MechanismDrag& held, Picture& pi
     const bool has_arrow = !session.mechanism_scene().has_friction_marks();
     if (session.scene().shows("force") && has_arrow && session.now().contact && !holds_start(held)) {
         const double scale = arrow_scale(picture.area, strongest);
-        if (const auto F = body.force(contact_force(session.trajectory(), session.now())))
-            arrow(center, inside(center, {center.x + scale * F->x, center.y - scale * F->y}, picture.area),
-                  phase_color(session.theme(), Phase::Kind::constrained));
+        if (const auto F = body.force(contact_force(session.trajectory(), session.now()))) {
+            const Point to = inside(center, {center.x + scale * F->x, center.y - scale * F->y}, picture.area);
+            arrow(center, to, phase_color(session.theme(), Phase::Kind::constrained));
+            picture.forces.push_back({center, to, {}});
+        }
     }
     if (session.scene().shows("velocity")) arrow(center, inside(center, picture.tip, picture.area), text_color());
 }
@@ -312,7 +201,11 @@ Picture paint_picture(const Session& session, const Rectangle& area, const Mecha
         now, seen, session.theme(), {scene.shows("trail"), scene.shows("strobe"), scene.shows("force")});
     add_ghosts(session, drawing);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
+    Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0, {}};
+    if (scene.shows("force"))
+        for (const auto& force : session.mechanism_scene().force_arrows(seen, now))
+            picture.forces.push_back(
+                {picture.placement.pixel(force.from), picture.placement.pixel(force.to), force.which});
     for (AnchorPoint& grip : session.mechanism().grips(parameters)) {
         const auto body = Body::of(grip, t, state);
         if (!body && picture.bodies.empty()) return picture;
@@ -337,18 +230,6 @@ command::LookAt zoomed_view(const Picture& picture, const ImVec2& mouse, double 
     const Point center = picture.placement.world(
         {mouse.x + (middle.x - mouse.x) * factor - moved.x, mouse.y + (middle.y - mouse.y) * factor - moved.y});
     return {center.x, center.y, factor * double{a.width} / picture.placement.unit};
-}
-
-// The `start` command for coordinates, rates or both.
-command::SetStart start_of(const Session& session, const Vector* q, const Vector* v) {
-    command::SetStart start;
-    const auto& coordinates = session.description().coordinates;
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
-        if (q != nullptr) start.values.emplace_back(coordinates[i].name, (*q)[at]);
-        if (v != nullptr) start.values.emplace_back(coordinates[i].name + "'", (*v)[at]);
-    }
-    return start;
 }
 
 // Target position of the dragged object, pixels.
@@ -433,15 +314,20 @@ void take_hold(const Session& session, const Picture& picture, const Aim& aim, M
             offset,
             picture.placement,
             session.trail().fastest,
-            session.trail().strongest};
+            session.trail().strongest,
+            session.is_in_space() ? std::optional(session.direction()) : std::nullopt};
 }
 
 void drag(const Session& session, const Picture& picture, MechanismDrag& held, Commands& commands) {
     const ImVec2 delta = ImGui::GetIO().MouseDelta, mouse = ImGui::GetIO().MousePos;
     if (delta.x == 0.0F && delta.y == 0.0F) return;
     if (held.what == DragTarget::background) {
-        if (ImGui::IsMouseDragging(ImGuiMouseButton_Left))
-            commands.emplace_back(zoomed_view(picture, mouse, 1.0, delta));
+        if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left)) return;
+        if (held.direction) {
+            const ImVec2 way = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
+            return turn_by_hand(session, *held.direction, way.x / units(1.0F), way.y / units(1.0F), commands);
+        }
+        commands.emplace_back(zoomed_view(picture, mouse, 1.0, delta));
         return;
     }
     // The camera stays where the hand has put something, until another view is asked for.
@@ -454,6 +340,23 @@ void drag(const Session& session, const Picture& picture, MechanismDrag& held, C
     if (held.what == DragTarget::arrow) drag_arrow(session, picture, held, commands);
 }
 
+// The forces whose arrow is under the mouse, with their values; empty: none is.
+std::string forces_under(const Session& session, const Picture& picture, const ImVec2& mouse) {
+    double least = units(6.0F);
+    std::string text;
+    for (const Picture::ForceArrow& force : picture.forces) {
+        const double x = force.to.x - force.from.x, y = force.to.y - force.from.y, square = x * x + y * y;
+        const double along = (mouse.x - force.from.x) * x + (mouse.y - force.from.y) * y;
+        const double s = square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
+        const double far = distance({force.from.x + s * x, force.from.y + s * y}, mouse);
+        if (!(far <= least)) continue;
+        least = far;
+        text = contact_forces_text(session, force.contact);
+    }
+    if (!text.empty()) text.pop_back();  // the last new line
+    return text;
+}
+
 void mark_places(const Picture& picture, PanelState& state) {
     const auto mark = [&](const std::string& name, const Point& at) {
         state.places[name] = {static_cast<float>(at.x), static_cast<float>(at.y), 0.0F, 0.0F};
@@ -461,6 +364,8 @@ void mark_places(const Picture& picture, PanelState& state) {
     for (std::size_t i = 0; i < picture.centers.size(); ++i)
         mark(i == 0 ? "body" : "body " + std::to_string(i + 1), picture.centers[i]);
     if (!picture.centers.empty()) mark("velocity", picture.tip);
+    for (const Picture::ForceArrow& force : picture.forces)
+        mark("force", {0.5 * (force.from.x + force.to.x), 0.5 * (force.from.y + force.to.y)});
 }
 
 void use_mouse(const Session& session, const Picture& picture, PanelState& state, Commands& commands) {
@@ -480,13 +385,19 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
         const std::string forces = session.scene().shows("force") ? contact_forces_text(session) : "";
         tooltip(forces + (under.what == DragTarget::arrow ? "drag to set the initial rates"
                                                           : "drag to set the initial position"));
+    } else if (is_hovered) {
+        tooltip(forces_under(session, picture, mouse));
     }
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
-    if (is_hovered && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F) && (delta.x != 0.0F || delta.y != 0.0F))
+    const bool is_moved =
+        ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F) || ImGui::IsMouseDragging(ImGuiMouseButton_Right, 0.0F);
+    if (is_hovered && is_moved && (delta.x != 0.0F || delta.y != 0.0F))
         commands.emplace_back(zoomed_view(picture, mouse, 1.0, delta));
     if (ImGui::IsItemActivated()) take_hold(session, picture, under, state.held);
-    if (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.held.what == DragTarget::background)
+    if (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.held.what == DragTarget::background) {
         commands.emplace_back(command::LookAll{});
+        if (session.scene().direction()) commands.emplace_back(command::TurnBack{});
+    }
     if (ImGui::IsItemActive())
         drag(session, picture, state.held, commands);
     else
@@ -503,62 +414,6 @@ void show_start_note(const Session& session, const Picture& picture) {
     if (at.x >= a.x && at.x <= a.x + a.width && at.y >= a.y && at.y <= a.y + a.height) return;
     const char* const note = "the start is outside this view; double click: the whole run";
     cell({a.x + units(12.0F), a.y + units(4.0F)}, note, a.width - units(24.0F), faint_color());
-}
-
-// True if the plane replaces the mechanism: by the user's choice, or since the system has no drawing.
-bool shows_plane(const Session& session) { return session.scene().shows("plane") || session.mechanism().is_empty(); }
-
-// The layers that can be shown, from right to left. With the plane: the contours, and the plane itself only if there is
-// a mechanism. With side views: the trail.
-std::vector<const char*> layers_of(const Session& session, const PanelState& state) {
-    const bool plane = shows_plane(session), sides = !plane && shows_sides(session);
-    const bool has_sides = TwoViews(session.trajectory(), session.samples()).exist();
-    std::vector<const char*> layers;
-    for (const char* what : {"plane", "contours", "sides", "force", "velocity", "strobe", "trail"}) {
-        const std::string_view word = what;
-        if (word == "plane" ? session.mechanism().is_empty() : plane != (word == "contours")) continue;
-        if (word == "contours" && !has_contours(state.plane)) continue;
-        if (word == "sides" ? !has_sides : sides && word != "trail" && word != "plane") continue;
-        layers.push_back(what);
-    }
-    return layers;
-}
-
-// Whether these toggles fit between the scale bar and `right`.
-bool have_room(const std::vector<const char*>& layers, const Rectangle& line, float right) {
-    float width = units(12.0F + min_scale_bar + label_of_scale + 8.0F);
-    for (const char* what : layers) width += ImGui::CalcTextSize(what).x + units(between_switches);
-    return width <= right - line.x;
-}
-
-// Toggles for layers in the line below the picture. Returns their left end.
-float show_switches(const Session& session, const std::vector<const char*>& layers, float right, float y,
-                    PanelState& state, Commands& commands) {
-    float x = right;
-    for (const char* what : layers) {
-        const std::string_view word = what;
-        const bool is_plane = word == "plane";
-        const bool shown = session.scene().shows(what);
-        const ImVec2 size = ImGui::CalcTextSize(what);
-        x -= size.x;
-        ImGui::SetCursorScreenPos({x, y});
-        ImGui::PushID(what);
-        if (ImGui::InvisibleButton("switch", size)) commands.emplace_back(command::Show{what, !shown});
-        ImGui::PopID();
-        remember(state, std::string("show ") + what);
-        const bool lit = ImGui::IsItemHovered();
-        tooltip(is_plane && shown            ? "back to the mechanism"
-                : is_plane                   ? "the plane of two quantities, where the gap is open, and the run"
-                : word == "contours"         ? (shown ? "hide the energy contours" : "show the energy contours")
-                : word == "sides"            ? (shown ? "back to the drawing" : "show two side views: x and z, y and z")
-                : word == "strobe" && !shown ? "show the poses at the events"
-                                             : std::string(shown ? "hide the " : "show the ") + what);
-        ImDrawList* list = ImGui::GetWindowDrawList();
-        list->AddText({x, y}, packed(lit ? text_color() : faint_color(), shown || lit ? 1.0F : 0.6F), what);
-        if (shown) list->AddLine({x, y + size.y}, {x + size.x, y + size.y}, packed(faint_color()), units(1.0F));
-        x -= units(between_switches);
-    }
-    return x;
 }
 
 }  // namespace
@@ -584,12 +439,12 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
     if (world.height < 2.0F) return;
     const Rectangle line{area.x, area.y + area.height - bottom, area.width, bottom};
     const float right = line.x + line.width - units(10.0F), y = line.y + units(6.0F);
-    const std::vector<const char*> layers = layers_of(session, state);
+    const std::vector<const char*> layers = layers_of(session, has_contours(state.plane));
     if (shows_plane(session)) {
         state.held = {};
         show_plane(session, world, state, commands);
         // With new axes the plane may have contours or none.
-        show_switches(session, layers_of(session, state), right, y, state, commands);
+        show_switches(session, layers_of(session, has_contours(state.plane)), right, y, state, commands);
         return;
     }
     if (shows_sides(session)) {

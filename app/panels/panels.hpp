@@ -16,7 +16,7 @@
 #include "paint/paint.hpp"
 #include "panels/browser.hpp"
 #include "panels/focus.hpp"
-#include "session/session.hpp"
+#include "session/results_text.hpp"
 
 namespace achilles {
 
@@ -157,6 +157,7 @@ struct MechanismDrag {
     Point offset;                           // from the mouse to the target, pixels
     Placement placement;                    // frozen placement of the picture
     double fastest = 0.0, strongest = 0.0;  // frozen reference values of the arrow scale
+    std::optional<ViewAngles> direction{};  // of a system in space, when the drag began
 };
 
 // The configuration plane, and its picture for the run that is shown.
@@ -281,7 +282,6 @@ struct PanelState {
 std::vector<Command> explorer(const Session& session, PanelState& state);
 
 // Parts of the frame. Each draws into a window already begun by explorer().
-using Commands = std::vector<Command>;
 void show_bar(const Session& session, PanelState& state, Commands& commands);
 void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
@@ -341,14 +341,6 @@ float energy_height(bool with_course);
 // The state in numbers at the top of the mechanism's panel, and its height for a panel of this width.
 void show_state(const Session& session, const Rectangle& panel);
 float state_height(const Session& session, float panel_width);
-// "2.7251422 ± 7.4e-7": the time of a Zeno point. The tolerance is the larger of the certified distance to the exact
-// Zeno time from the computed state at the cut, and the integration error estimate. Without a certificate: only the
-// time.
-std::string time_text(const Trajectory& trajectory, std::size_t event, double error = 0.0);
-// Explanation of this tolerance.
-std::string precision_text();
-// `before` followed by "proved: t in [LOW, HIGH]"; empty if no proof encloses the event.
-std::string proved_text(const Session& session, std::size_t event, const std::string& before = "");
 // The configuration plane in place of the mechanism: two quantities, the region where the gap is open, the run, and its
 // start, which can be dragged. For one coordinate it is the phase plane.
 bool has_contours(const PlaneView& plane);

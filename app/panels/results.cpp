@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 #include "output/contacts.hpp"
@@ -12,7 +11,6 @@
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
-#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -20,62 +18,6 @@ namespace achilles {
 namespace {
 
 constexpr float padding = 6.0F, sign_width = 18.0F, between = 18.0F, max_of_strip = 0.6F, arrow_width = 30.0F;
-
-// A result in the strip: its name above its time.
-struct Result {
-    std::size_t event = 0;
-    int zeno = 0;  // number among the Zeno points
-};
-
-std::string explanation(const Session& session, std::size_t index) {
-    const Event& event = session.trajectory().events[index];
-    const std::string event_text = typeset_sentence(
-        fmt::format("{} at t = {} s: {}", names_of(event).name,
-                    known_digits(event.t, session.precision().of_event(index), 10), session.sentences().of(index)));
-    if (session.precision().is_beyond(event.t)) return event_text;  // a certificate refers to the computed motion
-    if (!event.is_zeno()) return event_text + proved_text(session, index, "\n") + "\nClick: why";
-    if (session.enclosed(index) != nullptr) return event_text + proved_text(session, index, "\n");
-    std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "not certified";
-    for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
-        proof.replace(at, 2, "\n");
-    return event_text + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
-}
-
-// "Zeno 2", "landing", "release knee", "wall opens knee".
-std::string name_of(const Trajectory& trajectory, const Result& result) {
-    const Event& event = trajectory.events[result.event];
-    const std::string contacts = event_contacts_text(trajectory, event), space = contacts.empty() ? "" : " ";
-    if (event.is_impact()) return fmt::format("{} opens {}", contacts, joined_names(*trajectory.model, event.opened));
-    const std::string number = is_zeno_point(event) ? fmt::format(" {}", result.zeno) : "";
-    return fmt::format("{}{}{}{}", names_of(event).label, number, space, contacts);
-}
-
-// All results of a run. Of contacts that repeatedly come to rest and are opened only the last.
-std::vector<Result> results_of(const Trajectory& trajectory) {
-    std::vector<Result> results;
-    int zeno = 0;
-    const std::vector<ChatterPhases> chatters = chatters_of(trajectory);
-    auto chatter = chatters.begin();
-    for (const std::size_t turn : turns(trajectory, true)) {
-        const Event& event = trajectory.events[turn];
-        zeno += is_zeno_point(event) ? 1 : 0;
-        while (chatter != chatters.end() && turn >= chatter->last_event) ++chatter;
-        if (chatter != chatters.end() && turn >= chatter->first_event && turn + 1 < chatter->last_event) continue;
-        results.push_back({turn, zeno});
-    }
-    return results;
-}
-
-// The result to show: the selected event, or the last one up to the current time; else the first.
-std::size_t wanted(const Session& session, const std::vector<Result>& results) {
-    const auto& events = session.trajectory().events;
-    const auto reaches = [&](const Result& result) {
-        if (session.selected() > 0) return static_cast<int>(result.event) < session.selected();
-        return events[result.event].t <= session.time();
-    };
-    const auto after = std::partition_point(results.begin(), results.end(), reaches);
-    return after == results.begin() ? 0 : static_cast<std::size_t>(after - results.begin()) - 1;
-}
 
 // Text and width of a cell. In a strip of one line the time is beside the name.
 struct ResultCell {
@@ -86,9 +28,9 @@ struct StripLayout {
     float room = 0.0F;  // pixels, between its ends
     bool is_low = false;
 };
-ResultCell cell_of(const Session& session, const Result& result, const StripLayout& strip) {
+ResultCell cell_of(const Session& session, const ListedResult& result, const StripLayout& strip) {
     const Trajectory& trajectory = session.trajectory();
-    ResultCell cell{name_of(trajectory, result),
+    ResultCell cell{result_name(trajectory, result),
                     time_text(trajectory, result.event, session.precision().of_event(result.event)), 0.0F};
     // A proof made by itself leaves the cells as wide as they are, so that nothing moves when it arrives.
     const EnclosedEvent* const enclosed = session.enclosed(result.event);
@@ -96,8 +38,9 @@ ResultCell cell_of(const Session& session, const Result& result, const StripLayo
     if (enclosed != nullptr && (is_asked || is_zeno_point(trajectory.events[result.event]))) cell.name += ", proved";
     if (enclosed != nullptr && is_asked) cell.time = with_minus(short_text(enclosed->t));
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
-    const float room = (strip.is_low ? 1.0F : max_of_strip) * strip.room - units(sign_width);
-    cell.name = fitted(cell.name, room), cell.time = fitted(cell.time, room);
+    // A long name leaves room for a neighbor; a time never loses its tolerance.
+    cell.name = fitted(cell.name, (strip.is_low ? 1.0F : max_of_strip) * strip.room - units(sign_width));
+    cell.time = fitted(cell.time, strip.room - units(sign_width));
     cell.width = units(sign_width) + std::max(width_of(cell.name), width_of(cell.time));
     return cell;
 }
@@ -109,7 +52,7 @@ struct VisibleResults {
 };
 
 // As many as fit from `begin` on; at the end of the run the strip is filled with earlier ones.
-VisibleResults shown_from(const Session& session, const std::vector<Result>& results, std::size_t begin,
+VisibleResults shown_from(const Session& session, const std::vector<ListedResult>& results, std::size_t begin,
                           const StripLayout& strip) {
     VisibleResults shown{begin, {}};
     float x = 0.0F;
@@ -131,7 +74,7 @@ VisibleResults shown_from(const Session& session, const std::vector<Result>& res
 }
 
 // The cells around result `seen`, which is near the middle.
-VisibleResults shown_around(const Session& session, const std::vector<Result>& results, std::size_t seen,
+VisibleResults shown_around(const Session& session, const std::vector<ListedResult>& results, std::size_t seen,
                             const StripLayout& strip) {
     std::size_t begin = seen;
     float x = 0.5F * cell_of(session, results[seen], strip).width;
@@ -144,8 +87,8 @@ VisibleResults shown_around(const Session& session, const std::vector<Result>& r
 }
 
 // The user's scroll position, until the current time reaches another result.
-VisibleResults shown_by(const Session& session, PanelState& state, const std::vector<Result>& results, std::size_t seen,
-                        const StripLayout& strip) {
+VisibleResults shown_by(const Session& session, PanelState& state, const std::vector<ListedResult>& results,
+                        std::size_t seen, const StripLayout& strip) {
     ResultStrip& by_hand = state.strip;
     if (by_hand.seen != results[seen].event || by_hand.count != results.size()) {
         by_hand = {};
@@ -183,7 +126,7 @@ void use_hand(const VisibleResults& shown, std::size_t count, bool is_hovered, P
     }
 }
 
-void show_result(const Session& session, const Result& result, const ResultCell& cell, ImVec2 at,
+void show_result(const Session& session, const ListedResult& result, const ResultCell& cell, ImVec2 at,
                  const Rectangle& strip, bool is_present, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[result.event];
     const int number = static_cast<int>(result.event) + 1;
@@ -210,7 +153,7 @@ void show_result(const Session& session, const Result& result, const ResultCell&
     };
     put(0.5F * (line - ImGui::GetTextLineHeight()), cell.name, is_to_come ? faint_color() : text_color());
     put(line - units(1.0F), cell.time, is_to_come ? faint_color() : text_color());
-    tooltip(explanation(session, result.event),
+    tooltip(result_explanation(session, result.event),
             {at.x, strip.y, cell.width, strip.height});  // keep the other results visible
     if (pressed && !state.strip.was_dragged) commands.emplace_back(command::Select{is_chosen ? 0 : number});
 }
@@ -260,34 +203,6 @@ void show_none(const Session& session, ImVec2 at, float width) {
 
 }  // namespace
 
-std::string precision_text() {
-    return "\u00b1: certified for the Zeno time from the computed state at the cut.\nErrors of the integration and of "
-           "the cuts before it are not covered: where\ntheir estimate is larger, it is shown instead, and it is not "
-           "certified.";
-}
-
-std::string time_text(const Trajectory& trajectory, std::size_t index, double error) {
-    const Event& event = trajectory.events[index];
-    if (!std::isfinite(error)) return unknown_number;
-    const bool is_proved = event.certificate && event.certificate->certified;
-    const double low = is_proved ? event.certificate->zeno_low : 0.0,
-                 high = is_proved ? event.certificate->zeno_high : 0.0;
-    const double half = 0.5 * (high - low);
-    if (!is_proved || !(half > 0.0)) return number_with_decimals(event.t, error, 6);
-    // Leave out digits within the tolerance.
-    const double integration = std::max(error, integration_error_of_time(trajectory, index));
-    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(half, integration)))), 0, 12);
-    const std::string text = fmt::format("{:.{}f}", event.t, digits);
-    const double value = std::strtod(text.c_str(), nullptr);
-    return text + " \u00b1 " + rounded_up(std::max({high - value, value - low, integration}));
-}
-
-std::string proved_text(const Session& session, std::size_t event, const std::string& before) {
-    const EnclosedEvent* const enclosed = session.enclosed(event);
-    if (enclosed == nullptr) return "";
-    return before + "proved: t in " + with_minus(interval_text(enclosed->t.lo(), enclosed->t.hi()));
-}
-
 float results_height(const Session& session) {
     if (session.scene().presents()) return 0.0F;
     return 2.0F * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(padding);
@@ -302,9 +217,9 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const auto lines = static_cast<int>((area.height + 1.0F - 2.0F * units(padding)) / line);
     if (lines < 1) return;
-    const std::vector<Result> results = results_of(session.trajectory());
+    const std::vector<ListedResult> results = results_of(session.trajectory());
     if (results.empty()) return show_none(session, {left, top}, width);
-    const std::size_t seen = wanted(session, results);
+    const std::size_t seen = present_result(session, results);
     // Always reserve room for both arrows, so that the cells do not jump when one appears.
     const float inset = units(arrow_width + 6.0F);
     const bool is_low = lines < 2;

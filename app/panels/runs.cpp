@@ -1,6 +1,7 @@
 // The list of the current and the pinned runs, and their comparison.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "figure/palette.hpp"
 #include "paint/paint.hpp"
@@ -148,20 +149,14 @@ namespace {
 
 constexpr float run_name_width = 132.0F, widest_column = 190.0F, min_column = 74.0F, table_sign_width = 15.0F;
 
-// Columns as wide as the panel allows.
-struct RunColumns {
-    float first = 0.0F, each = 0.0F;
-    std::size_t count = 0;  // number of runs, plus one if there is a column of changes
-    float at(std::size_t i) const { return first + each * static_cast<float>(i); }
-};
-
-RunColumns columns_of(const Session& session) {
-    RunColumns columns;
-    const std::size_t runs = session.pinned().size() + 1;
-    columns.count = runs == 2 ? 3 : runs;
+// Widths of the columns: the names, each run, and with one pinned run the changes. As wide as the panel allows.
+std::vector<float> columns_of(const Session& session) {
+    const std::size_t runs = session.pinned().size() + 1, count = runs == 2 ? 3 : runs;
     const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
-    columns.first = std::min(units(run_name_width), 0.28F * room);
-    columns.each = std::min(units(widest_column), (room - columns.first) / static_cast<float>(columns.count));
+    const float first = std::floor(std::min(units(run_name_width), 0.28F * room));
+    std::vector<float> columns(count + 1,
+                               std::floor(std::min(units(widest_column), (room - first) / static_cast<float>(count))));
+    columns.front() = first;
     return columns;
 }
 
@@ -171,36 +166,45 @@ void paint_table_sign(const ImVec2& at, const Color& color) {
 }
 
 // Names and colors of the runs; this line does not scroll.
-void show_head(const Session& session, const RunColumns& columns) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const auto title = [&](std::size_t i, const std::string& name, const Color* color) {
-        const float x = at.x + columns.at(i), side = color != nullptr ? units(table_sign_width) : 0.0F;
-        if (color != nullptr) paint_table_sign({x, at.y}, *color);
-        cell({x + side, at.y}, name, columns.each - side - units(6.0F),
-             color != nullptr ? text_color() : faint_color());
+void show_head(const Session& session, const std::vector<float>& columns) {
+    const LineTable table("names", columns);
+    table.next_row();
+    table.put("", faint_color());
+    const auto title = [&](const std::string& name, const Color& color) {
+        paint_table_sign(table.put(name, text_color(), units(table_sign_width)), color);
     };
-    const Color ink = session.theme().ink;
-    title(0, session.name_of_run().empty() ? "present" : session.name_of_run(), &ink);
-    for (std::size_t i = 0; i < session.pinned().size(); ++i) {
-        const PinnedRun& run = session.pinned()[i];
-        const Color color = run_color(session.theme(), run.place);
-        title(i + 1, run.name.empty() ? "pinned" : run.name, &color);
-    }
-    if (session.pinned().size() == 1) title(2, "change", nullptr);
-    ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
+    title(session.name_of_run().empty() ? "present" : session.name_of_run(), session.theme().ink);
+    for (const PinnedRun& run : session.pinned())
+        title(run.name.empty() ? "pinned" : run.name, run_color(session.theme(), run.place));
+    if (session.pinned().size() == 1) table.put("change", faint_color());
 }
 
 // Bright where the value differs from the current run's; that one is bright if any differs.
-void show_row(const RunTable::Row& row, const RunColumns& columns) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
+void show_row(const RunTable::Row& row, const LineTable& table) {
     const bool any = std::find(row.differs.begin(), row.differs.end(), true) != row.differs.end();
-    cell(at, row.name, columns.first - units(6.0F), any ? text_color() : faint_color());
+    table.next_row();
+    table.put(row.name, any ? text_color() : faint_color());
     for (std::size_t i = 0; i < row.values.size(); ++i)
-        cell({at.x + columns.at(i), at.y}, row.values[i], columns.each - units(6.0F),
-             row.differs[i] || (i == 0 && any) ? text_color() : faint_color());
-    if (any && row.values.size() == 2)
-        cell({at.x + columns.at(2), at.y}, row.change, columns.each - units(6.0F), text_color());
-    ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
+        table.put(row.values[i], row.differs[i] || (i == 0 && any) ? text_color() : faint_color());
+    if (any && row.values.size() == 2) table.put(row.change, text_color());
+}
+
+// The inputs that differ, a line, and the results.
+void show_rows(const RunTable& runs, const std::vector<float>& columns) {
+    const auto show_part = [&](bool is_cause) {
+        const LineTable table(is_cause ? "inputs" : "results", columns);
+        for (const RunTable::Row& row : runs.rows)
+            if (row.is_cause == is_cause) show_row(row, table);
+    };
+    show_part(true);
+    if (!runs.rows.empty() && runs.rows.front().is_cause && !runs.rows.back().is_cause) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float y = std::floor(at.y - 0.5F * ImGui::GetStyle().ItemSpacing.y) + 0.5F;
+        const float width = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+        const float end = at.x + std::min(width, std::accumulate(columns.begin(), columns.end(), 0.0F));
+        ImGui::GetWindowDrawList()->AddLine({at.x, y}, {end, y}, ImGui::GetColorU32(ImGuiCol_Border));
+    }
+    show_part(false);
 }
 
 // A run's marker, then how it differs.
@@ -224,25 +228,14 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
             session.pinned().size() == 1 ? "Comparison with the pinned run" : "Comparison with the pinned runs", "",
             state))
         commands.emplace_back(command::Show{"runs", false});
-    const RunColumns columns = columns_of(session);
+    const std::vector<float> columns = columns_of(session);
     show_head(session, columns);
     const float line = ImGui::GetTextLineHeightWithSpacing();  // height of whole lines
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
     ImGui::BeginChild("table", {0.0F, room}, false);
     const float width = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
-    bool was_cause = false;
-    for (const RunTable::Row& row : table.rows) {
-        // A line between inputs and results.
-        if (was_cause && !row.is_cause) {
-            const ImVec2 at = ImGui::GetCursorScreenPos();
-            const float y = std::floor(at.y - 0.5F * ImGui::GetStyle().ItemSpacing.y) + 0.5F;
-            ImGui::GetWindowDrawList()->AddLine({at.x, y}, {at.x + std::min(width, columns.at(columns.count)), y},
-                                                ImGui::GetColorU32(ImGuiCol_Border));
-        }
-        was_cause = row.is_cause;
-        show_row(row, columns);
-    }
+    show_rows(table, columns);
     for (const auto& [run, sentence] : table.divergences)
         show_parting(session.pinned()[run - 1], sentence, width, session);
     ImGui::EndChild();

@@ -45,12 +45,12 @@ std::string shown(const Slider& slider, double value, int digits = 6) {
     return number_with_unit(number(rounded(value * slider.factor, std::min(digits, slider.digits + 2))), slider.unit);
 }
 
-// With as many digits as fit.
+// With as many digits as fit; without its unit where not even two would, since half a unit is another one.
 std::string shown_in(float width, const Slider& slider, double value) {
-    for (int digits = 6; digits > 2; --digits)
+    for (int digits = 6; digits > 1; --digits)
         if (const std::string text = shown(slider, value, digits); ImGui::CalcTextSize(text.c_str()).x <= width)
             return text;
-    return fitted(shown(slider, value, 2), width);
+    return fitted(number(rounded(value * slider.factor, 2)), width);
 }
 
 // One line; F1 has the mouse and the keys.

@@ -7,8 +7,8 @@
 
 #include "output/proof.hpp"
 #include "panels/actions.hpp"
-#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
+#include "session/event_rows.hpp"
 #include "session/study_jobs.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

@@ -17,6 +17,7 @@
 #include "output/contacts.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
+#include "session/sweep_text.hpp"
 #include "system/units.hpp"
 
 namespace achilles {
@@ -185,17 +186,6 @@ void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& 
 
 namespace {
 
-// The current run's value along an axis, in the file's unit.
-std::optional<double> present(const Session& session, const SweepAxis& axis) {
-    if (const auto value = session.value(axis.name)) return value;
-    const std::vector<const Option*> options = options_of_axis(axis.name);
-    if (options.empty()) return std::nullopt;
-    const OptionValue value = options.front()->get(session.run().options);
-    if (const double* const number = std::get_if<double>(&value)) return *number;
-    if (const int* const count = std::get_if<int>(&value)) return static_cast<double>(*count);
-    return std::nullopt;
-}
-
 // The panel, composed once per picture, not per frame.
 const Panel& composed(const Session& session, SweepState& state) {
     const auto& data = session.sweep_job().data();
@@ -259,7 +249,7 @@ void show_cross_hair(const Session& session, const SweepData& data, const Rectan
         list->AddLine(from, to, packed(text_color(), 0.8F), units(1.0F));
     };
     const auto present_on = [&](std::size_t axis) {
-        std::optional<double> value = present(session, data.sweep.axes[axis]);
+        std::optional<double> value = present_value(session, data.sweep.axes[axis]);
         if (value) *value *= shown_unit_of_axis(data, axis).factor;
         return value;
     };
@@ -285,105 +275,8 @@ void show_cross_hair(const Session& session, const SweepData& data, const Rectan
     list->PopClipRect();
 }
 
-// Commands that move the current run to a point. All values are set at once: an intermediate state might be infeasible.
-void go_to(const SweepData& data, const std::vector<double>& values, Commands& commands) {
-    command::SetStart start;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const SweepAxis& axis = data.sweep.axes[i];
-        const double value = std::clamp(values[i], std::min(axis.low, axis.high), std::max(axis.low, axis.high));
-        const std::vector<const Option*> options = options_of_axis(axis.name);
-        if (options.empty()) {
-            start.values.emplace_back(axis.name, value);
-            continue;
-        }
-        Options changed = data.sweep.base.options;
-        for (const Option* option : options) option->set(changed, value);
-        commands.emplace_back(command::SetOption(*options.front(), changed));
-    }
-    if (!start.values.empty()) commands.emplace_back(std::move(start));
-}
-
-// "3 impacts before the cut, Zeno point at 2.7251 s, release at 3.7318 s": the events of the run at a point. For a
-// tooltip within one frame, only the beginning of a long run is simulated.
-std::string events_of(const Session& session, const Run& run) {
-    constexpr int most_impacts = 2000, most_steps = 20000, max_listed = 6;
-    Run shorter = run;
-    shorter.options.max_impacts = std::min(shorter.options.max_impacts, most_impacts);
-    shorter.options.max_steps = std::min(shorter.options.max_steps, most_steps);
-    std::vector<std::string> listed;
-    int impacts = 0;
-    const auto tell_impacts = [&](const char* before) {
-        if (impacts > 0) listed.push_back((impacts == 1 ? "an impact" : fmt::format("{} impacts", impacts)) + before);
-        impacts = 0;
-    };
-    try {
-        const Trajectory trajectory = simulate(session.model(), shorter);
-        for (const Event& event : trajectory.events) {
-            if (event.is_impact()) {
-                ++impacts;
-                continue;
-            }
-            tell_impacts(event.truncation && !is_plastic_landing(event) ? " before the cut" : "");
-            listed.push_back(fmt::format("{} at {} s", names_of(event).name, number(event.t, "{:.5g}")));
-        }
-        tell_impacts("");
-        if (trajectory.outcome.kind != Outcome::Kind::end_time) listed.emplace_back("\u2026");
-    } catch (const InputError& problem) {
-        return problem.message;
-    }
-    if (listed.empty()) return "no event";
-    std::string text;
-    // Two per line: if ImGui wrapped the line, it could break within a number.
-    for (std::size_t i = 0; i < listed.size() && i < max_listed; ++i)
-        text += (i == 0 ? "" : i % 2 == 0 ? ",\n" : ", ") + listed[i];
-    return listed.size() > max_listed ? text + ", \u2026" : text;
-}
-
-// The row of the grid point nearest to the mouse, if it is computed.
-std::optional<std::size_t> row_at(const SweepData& data, const std::vector<double>& values) {
-    std::uint64_t point = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const SweepAxis& axis = data.sweep.axes[i];
-        double share = (values[i] - axis.low) / (axis.high - axis.low);
-        if (axis.logarithmic) share = std::log(values[i] / axis.low) / std::log(axis.high / axis.low);
-        if (!(share >= -0.01 && share <= 1.01)) return std::nullopt;
-        const double last = static_cast<double>(axis.count - 1);
-        point = point * axis.count + static_cast<std::uint64_t>(std::clamp(std::round(share * last), 0.0, last));
-    }
-    const auto& points = data.rows.points;
-    const auto found = std::lower_bound(points.begin(), points.end(), point);
-    if (found == points.end() || *found != point) return std::nullopt;
-    return static_cast<std::size_t>(found - points.begin());
-}
-
-std::string quantity_text(double value, const ShownUnit& unit) {
-    return number_with_unit(number(unit.factor * value), unit.text);
-}
-
-std::string row_text(const SweepData& data, std::size_t row) {
-    std::size_t number_place = 0;
-    std::string text;
-    for (const RunMeasures::Column& column : data.columns) {
-        std::string value;
-        if (column.kind == RunMeasures::Column::Kind::number) {
-            const double x = data.number(row, number_place++);
-            value = std::isfinite(x) ? quantity_text(x, shown_unit(column.unit)) : "no value";
-        } else if (column.kind == RunMeasures::Column::Kind::outcome) {
-            value = data.rows.ends[row].text();
-        } else if (column.kind == RunMeasures::Column::Kind::modes) {
-            value = modes_text(data.sliding, data.rows.modes[row]);
-        } else {
-            for (std::size_t i = 0; i < data.contacts.size(); ++i)
-                if (data.rows.held[row].contains(i)) value += (value.empty() ? "" : ", ") + data.contacts[i];
-            if (value.empty()) value = "nothing";
-        }
-        text += (text.empty() ? "" : "\n") + column.name + " = " + value;
-    }
-    return text;
-}
-
 void tell(const Session& session, const SweepData& data, const std::vector<double>& values, SweepState& state) {
-    const std::optional<std::size_t> row = row_at(data, values);
+    const std::optional<std::size_t> row = sweep_row_at(data, values);
     if (!row) return;
     const std::uint64_t point = data.rows.points[*row];
     if (state.described_data != &data || state.described_point != point) {
@@ -393,11 +286,12 @@ void tell(const Session& session, const SweepData& data, const std::vector<doubl
         state.tooltip.clear();
         for (std::size_t i = 0; i < sweep.axes.size(); ++i)
             state.tooltip += fmt::format("{} = {}\n", data.names[i],
-                                         quantity_text(sweep.value(i, point), shown_unit_of_axis(data, i)));
+                                         sweep_quantity_text(sweep.value(i, point), shown_unit_of_axis(data, i)));
         if (!data.is_section()) {
-            if (const std::string measured = row_text(data, *row); !measured.empty()) state.tooltip += measured + "\n";
+            if (const std::string measured = sweep_row_text(data, *row); !measured.empty())
+                state.tooltip += measured + "\n";
         }
-        state.tooltip += events_of(session, SweepPoints(sweep, session.description()).run(point));
+        state.tooltip += events_at(session, SweepPoints(sweep, session.description()).run(point));
     }
     tooltip(state.tooltip);
 }
@@ -437,7 +331,7 @@ void use_mouse(const Session& session, const SweepData& data, const Rectangle& a
         values.push_back(map.y.value(std::clamp<double>(mouse.y, area.y, area.y + area.height)));
     for (std::size_t i = 0; i < values.size(); ++i) values[i] /= shown_unit_of_axis(data, i).factor;
     const bool has_moved = ImGui::GetIO().MouseDelta.x != 0.0F || ImGui::GetIO().MouseDelta.y != 0.0F;
-    if (ImGui::IsItemActive() && (has_moved || ImGui::IsItemActivated())) go_to(data, values, commands);
+    if (ImGui::IsItemActive() && (has_moved || ImGui::IsItemActivated())) go_to_point(data, values, commands);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) tell(session, data, values, state.sweep);
 }
 

@@ -7,8 +7,8 @@
 #include "figure/axes.hpp"
 #include "paint/paint.hpp"
 #include "panels/actions.hpp"
-#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
+#include "session/event_rows.hpp"
 #include "surface/imgui_version.hpp"
 
 namespace achilles {

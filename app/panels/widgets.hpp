@@ -6,10 +6,12 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "figure/figure.hpp"
 #include "figure/palette.hpp"
 #include "panels/panels.hpp"
+#include "session/number_text.hpp"
 
 namespace achilles {
 
@@ -37,6 +39,21 @@ void cell(const ImVec2& at, const std::string& text, float width, const Color& c
 void cell(const ImVec2& at, const std::string& name, const std::string& value, float width, const Color& color);
 // Width of a label in a cell.
 float width_of(const std::string& text);
+// A table whose columns have these widths (pixels), without padding; its rows are as high as the lines of a text.
+class LineTable {
+ public:
+    LineTable(const char* name, const std::vector<float>& widths);
+    ~LineTable();
+    LineTable(const LineTable&) = delete;
+    LineTable& operator=(const LineTable&) = delete;
+    void next_row() const;
+    // A label in the next column, shortened to it, with room for a sign of this width before it. Returns where they
+    // begin.
+    ImVec2 put(const std::string& text, const Color& color, float sign = 0.0F) const;
+
+ private:
+    bool is_open_;
+};
 // A label with dots over its letters, on the current line, always `width` wide.
 void label(const std::string& text, float width);
 // A faint heading over a group of widgets, leaving `free` pixels at its right end.
@@ -118,20 +135,5 @@ class NearestEvent {
 };
 // A tooltip beside the mouse that names the event.
 void name_event(const Session& session, int number);
-// Replaces plain-text notation in a sentence from core by typeset symbols.
-std::string typeset_sentence(std::string text);
-// "12.3", with a real minus sign.
-std::string number(double value, const char* format = "{:.6g}");
-// A number with this many digits or decimals, without the digits that its error makes meaningless
-// (output/precision.hpp).
-std::string number(double value, double error, int digits);
-std::string number_with_decimals(double value, double error, int decimals);
-// "3 m", "30°": a number and its unit with a nonbreaking space.
-std::string number_with_unit(const std::string& number, const std::string& unit);
-// Replaces hyphens before numbers by minus signs.
-std::string with_minus(std::string text);
-// A number for a column of numbers of this size, with fixed decimals; in scientific notation if these would show no
-// digit, or if it would be too long. Drops decimals that its error makes meaningless.
-std::string number_of_size(double value, double size, int decimals, double error = 0.0);
 
 }  // namespace achilles

@@ -292,6 +292,8 @@ std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Expor
     words.insert(words.end(),
                  {"--fps", fmt::format("{}", fps_of(what)), "--speed", fmt::format("{}", speed_of(session, what)),
                   "--size", fmt::format("{}x{}", extent.width, extent.height), "--out", what.file, "--progress"});
+    if (const auto& from = session.scene().direction())
+        words.insert(words.end(), {"--turn", fmt::format("{},{}", from->about, from->tilt)});
     if (what.dark) words.emplace_back("--dark");
     if (what.overwrite) words.emplace_back("--overwrite");
     // A text that differs from its file is passed in a temporary file.

@@ -8,6 +8,7 @@
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
+#include "session/number_text.hpp"
 #include "session/study_jobs.hpp"
 
 namespace achilles {
@@ -17,9 +18,7 @@ namespace {
 // "1e−6" for "1e-06", as in the bounds beside it.
 std::string minus_signs(std::string text) {
     if (const std::size_t at = text.find("e-0"); at != std::string::npos) text.erase(at + 2, 1);
-    for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
-        text.replace(at, 1, "\u2212");
-    return text;
+    return with_minus(std::move(text));
 }
 
 // "Zeno 2", "Zeno 2 of wall".

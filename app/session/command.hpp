@@ -216,6 +216,16 @@ struct SetCamera {
         CommandSpec("camera", "write: camera fit, camera fixed, camera follow, or: camera zeno", UndoPolicy::view,
                     Field(&SetCamera::mode, {.one_of = &camera_modes, .complaint = "there is no camera '{}'{}"}));
 };
+struct TurnBack {  // the picture as the file draws it
+    static constexpr auto spec = CommandSpec("turn default", alone, UndoPolicy::view);
+};
+struct Turn {
+    // The direction from which a system in space is seen, degrees (ViewAngles).
+    double about = 0.0, tilt = 0.0;
+    static constexpr auto spec =
+        CommandSpec("turn", "write: turn ABOUT TILT, in degrees, such as turn 30 45, or: turn default",
+                    UndoPolicy::view, &Turn::about, &Turn::tilt);
+};
 constexpr double slowest = 1e-3, fastest = 10.0;
 struct Speed {
     double value = 1.0;  // simulated seconds per second of playback, from `slowest` to `fastest`
@@ -443,17 +453,19 @@ struct ShowSensitivity {
 }  // namespace command
 
 // In the order of the help listing.
-using AnyCommand = std::variant<
-    command::Open, command::Set, command::SetOption, command::Seek, command::Play, command::Pause, command::Select,
-    command::New, command::SetText, command::Save, command::Reload, command::Show, command::DefaultPlane,
-    command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::ShowSensitivity,
-    command::StopOrbit, command::FindOrbit, command::SelectBranchPoint, command::Find, command::SetGrid,
-    command::PlotView, command::Zoom, command::Fit, command::SetRange, command::AxisScale, command::ShowCurve,
-    command::Link, command::SetStart, command::LookAll, command::LookAt, command::SetCamera, command::Speed,
-    command::Loop, command::StopAnimation, command::Animate, command::StepEvents, command::Undo, command::Redo,
-    command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference,
-    command::ShowLens, command::SetTheme, command::Enlarge, command::Present, command::SetPanelSize, command::Reset,
-    command::EndEdit, command::Export, command::Copy, command::Wait, command::Say, command::Highlight, command::Replay>;
+using AnyCommand =
+    std::variant<command::Open, command::Set, command::SetOption, command::Seek, command::Play, command::Pause,
+                 command::Select, command::New, command::SetText, command::Save, command::Reload, command::Show,
+                 command::DefaultPlane, command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove,
+                 command::ShowSensitivity, command::StopOrbit, command::FindOrbit, command::SelectBranchPoint,
+                 command::Find, command::SetGrid, command::PlotView, command::Zoom, command::Fit, command::SetRange,
+                 command::AxisScale, command::ShowCurve, command::Link, command::SetStart, command::LookAll,
+                 command::LookAt, command::SetCamera, command::TurnBack, command::Turn, command::Speed, command::Loop,
+                 command::StopAnimation, command::Animate, command::StepEvents, command::Undo, command::Redo,
+                 command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall,
+                 command::PlotDifference, command::ShowLens, command::SetTheme, command::Enlarge, command::Present,
+                 command::SetPanelSize, command::Reset, command::EndEdit, command::Export, command::Copy, command::Wait,
+                 command::Say, command::Highlight, command::Replay>;
 // The variant type with copy, move and destruction defined in command.cpp: inline, they would cost seconds of compile
 // time in every file that uses a Command.
 struct Command : AnyCommand {
@@ -464,6 +476,8 @@ struct Command : AnyCommand {
     Command& operator=(Command&& other) noexcept;
     ~Command();
 };
+
+using Commands = std::vector<Command>;
 
 // One line without a newline. Numbers have the shortest form that reads back to the same value.
 std::string to_text(const Command& command);

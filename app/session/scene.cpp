@@ -35,8 +35,16 @@ void Scene::perform(const command::SetCamera& command) {
     if (camera_ == CameraMode::fit) look_.reset();
 }
 
+void Scene::perform(const command::Turn& command) {
+    if (!(std::abs(command.about) <= 360.0) || !(std::abs(command.tilt) <= 90.0))
+        throw refusal(fmt::format("a system cannot be turned by {} and {} degrees", command.about, command.tilt),
+                      "use -360 to 360 about the vertical, and a tilt from -90 to 90");
+    direction_ = {command.about, command.tilt};
+}
+
 void Scene::forget_place() {
     look_.reset();
+    direction_.reset();
     if (camera_ == CameraMode::fixed) camera_ = CameraMode::fit;
     lens_.reset();
     plane_.reset();
@@ -160,6 +168,7 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.look_) steps.emplace_back(*scene.look_);
     if (scene.camera() != (scene.look_ ? CameraMode::fixed : CameraMode::fit))
         steps.emplace_back(command::SetCamera{std::string(to_text(scene.camera()))});
+    if (const auto& from = scene.direction()) steps.emplace_back(command::Turn{from->about, from->tilt});
     Scene before;
     if (scene.plane()) before.perform(*scene.plane()), steps.emplace_back(*scene.plane());
     if (scene.sweep())
@@ -193,6 +202,7 @@ std::string to_text(const Scene& scene) {
         text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
     if (scene.camera() == CameraMode::follow || scene.camera() == CameraMode::zeno)
         text += fmt::format("camera {}\n", to_text(scene.camera()));
+    if (const auto& from = scene.direction()) text += fmt::format("turn {:.9g} {:.9g}\n", from->about, from->tilt);
     // The session's text has the edited text itself instead.
     for (const std::string& thing : command::shown_things)
         if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))

@@ -17,6 +17,8 @@ class Scene {
     CameraMode camera() const { return camera_; }
     // View of a fixed camera. Empty: the whole extent of the run, or the view that another camera mode computes.
     std::optional<command::LookAt> look() const { return camera_ == CameraMode::fixed ? look_ : std::nullopt; }
+    // The direction from which a system in space is seen; empty: as its file draws it.
+    const std::optional<ViewAngles>& direction() const { return direction_; }
     // True if `what`, one of command::shown_things, is visible.
     bool shows(const std::string& what) const { return shown_.contains(what); }
     // The panel at the place of the events: one of command::studies, or "events"; empty: none.
@@ -53,6 +55,8 @@ class Scene {
     void perform(const command::LookAt& command);
     void perform(const command::LookAll& command);
     void perform(const command::SetCamera& command);
+    void perform(const command::TurnBack&) { direction_.reset(); }
+    void perform(const command::Turn& command);  // the caller has checked that the system is one in space
     void perform(const command::Show& command);
     void perform(const command::DefaultPlane& command);
     void perform(const command::ShowPlane& command);        // the caller has checked the names it uses
@@ -71,6 +75,7 @@ class Scene {
     // Resets what depends on the world of a system, such as the view, and keeps preferences.
     void forget_place();
     // Reset settings that use names missing from an edited text.
+    void forget_direction() { direction_.reset(); }
     void forget_plane() { plane_.reset(); }
     void forget_sweep() { sweep_.reset(); }
     void forget_dependence() { depends_.reset(); }
@@ -78,6 +83,7 @@ class Scene {
  private:
     CameraMode camera_ = CameraMode::fit;
     std::optional<command::LookAt> look_;  // the last view of a fixed camera
+    std::optional<ViewAngles> direction_;
     friend std::vector<Command> steps_to(const Scene& scene);
     std::set<std::string> shown_{"trail", "velocity", "force", "mechanism", "controls", "plots", "events", "runs"};
     std::string front_ = "mechanism";

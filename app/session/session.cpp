@@ -45,6 +45,14 @@ Session::FinishedRun::FinishedRun(std::shared_ptr<const OpenSystem> of, Trajecto
 
 Session::FinishedRun::~FinishedRun() = default;
 
+void Session::FinishedRun::turn(const std::optional<ViewAngles>& from) {
+    if (from == direction) return;
+    direction = from;
+    mechanism_scene.reset();  // it refers to the mechanism
+    turned = from ? std::make_unique<Mechanism>(*system->model, from) : nullptr;
+    mechanism_scene = std::make_unique<MechanismScene>(mechanism(), trajectory, samples);
+}
+
 const Trail& Session::trail() const { return simulated_->mechanism_scene->trail(); }
 
 const Drawing& Session::limits() const { return simulated_->mechanism_scene->limits(); }
@@ -76,6 +84,7 @@ bool Session::apply(const Command& command) {
         if (changes_nothing && error_.empty()) error_ = failed;
         if (changes_nothing && notice_.empty()) notice_ = noticed;
         history_.remember(command, before, undo_state());
+        follow_direction();
         follow_studies();
         return true;
     } catch (const PermissionDenied&) {
@@ -210,6 +219,13 @@ void Session::read_document() {
     }
 }
 
+void Session::perform(const command::Turn& command) {
+    if (!is_in_space())
+        throw refusal("the mechanism of this system lies in a plane and cannot be turned",
+                      "a system turns whose coordinates are x, y and z, or r, phi and z, of a point");
+    scene_.perform(command);
+}
+
 void Session::perform(const command::ShowPlane& command) {
     or_refuse<command::ShowPlane>([&] { check_plane(command); });
     scene_.perform(command);
@@ -227,6 +243,7 @@ void Session::change_system(const std::shared_ptr<const OpenSystem>& system, con
     put_aside_pin();
     system_ = system;
     plots_ = plots;
+    if (!is_in_space()) scene_.forget_direction();
     keep_plane();
     keep_sweep();
     keep_dependence();
@@ -239,6 +256,7 @@ void Session::change_system(const std::shared_ptr<const OpenSystem>& system, con
     RunMonitor watch;
     watch.stop = at_once.get_token();
     simulated_ = std::make_shared<FinishedRun>(system_, simulate(system_->model, run, &watch), plots_, theme_);
+    follow_direction();
     compose_pinned();
     move_to(run.options.start_time);
 }
@@ -397,6 +415,7 @@ void Session::receive(Timeout patience) {
     const bool is_at_event = selected_ > 0 && simulated_ != nullptr && selected_ <= std::ssize(trajectory().events) &&
                              time_ == trajectory().events[static_cast<std::size_t>(selected_ - 1)].t;
     simulated_ = *motion;
+    follow_direction();
     watch_.reset();
     estimate();
     try {

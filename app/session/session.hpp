@@ -126,7 +126,11 @@ class Session {
     // the run is not accurate; empty: accurate to its end.
     const Precision& precision() const { return simulated_->sentences.precision(); }
     std::optional<double> horizon() const { return precision().horizon(); }
-    const Mechanism& mechanism() const { return system_->mechanism; }
+    // The mechanism as it is shown: as its file draws it, or in space and turned.
+    const Mechanism& mechanism() const { return simulated_->mechanism(); }
+    bool is_in_space() const { return SpaceView::shows(*system_->model); }
+    // The direction from which a system in space is seen: the one chosen, or that of the drawing in its file.
+    ViewAngles direction() const { return scene_.direction().value_or(drawn_angles(mechanism(), *system_->model)); }
     // Pinned runs of this system, in the order in which they were pinned.
     const std::vector<PinnedRun>& pinned() const { return pinned_; }
     // The pinned run at this place; null if there is none.
@@ -241,6 +245,9 @@ class Session {
         ~FinishedRun();
         FinishedRun(const FinishedRun&) = delete;  // `mechanism_scene` refers to other members
         FinishedRun& operator=(const FinishedRun&) = delete;
+        // Makes the mechanism and its scene anew for another direction; empty: the drawing of the file.
+        void turn(const std::optional<ViewAngles>& direction);
+        const Mechanism& mechanism() const { return turned ? *turned : system->mechanism; }
         Trajectory trajectory;
         std::shared_ptr<const OpenSystem> system;
         Sampler sampler;
@@ -251,6 +258,8 @@ class Session {
         EventDescriptions sentences;
         std::optional<ErrorEstimate> estimate;  // computed after everything else
         std::string quantity;                   // default_quantity() of the run
+        std::optional<ViewAngles> direction;
+        std::unique_ptr<Mechanism> turned;  // null: the drawing of the file
         std::unique_ptr<MechanismScene> mechanism_scene;
         int revision = 0;   // revision of the plots shown in `plots`
         bool dark = false;  // theme of `plots`
@@ -265,6 +274,7 @@ class Session {
     void perform(const command::Pause& command);
     void perform(const command::Select& command);
     void perform(const command::ShowLens& command);
+    void perform(const command::Turn& command);
     void perform(const command::ShowPlane& command);
     void perform(const command::ShowSweep& command);
     void perform(const command::ShowSensitivity& command);
@@ -332,6 +342,7 @@ class Session {
     void keep_plane();
     void keep_sweep();
     void keep_dependence();
+    void follow_direction() { simulated_->turn(scene_.direction()); }
     void follow_studies();
     bool vary(const std::string& name, double value);
     void follow_sweep();

@@ -245,10 +245,11 @@ void Session::compose_pinned() {
         PinnedRun& run = pinned_[i];
         run.name = names[i + 1];
         if (!run.shown) continue;
-        if (run.touched.get() != &mechanism() || run.touched_size != limits().size) {
-            run.touched = {system_, &mechanism()};
+        const Mechanism& drawn = system_->mechanism;  // turned, the scene has the contacts
+        if (run.touched.get() != &drawn || run.touched_size != limits().size) {
+            run.touched = {system_, &drawn};
             run.touched_size = limits().size;
-            run.touch = std::make_shared<const ContactGeometry>(mechanism(), *run.trajectory, run.touched_size);
+            run.touch = std::make_shared<const ContactGeometry>(drawn, *run.trajectory, run.touched_size);
         }
         if (run.revision != plots_.revision() || run.dark != theme_.dark || run.plots.size() != plots_.list().size())
             run.plots = plots_.compose(*run.trajectory, *run.samples, theme_, run.horizon());

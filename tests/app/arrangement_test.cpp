@@ -1,5 +1,5 @@
 // Layout of the panels: no overlap, none outside the window; all can be hidden and resized.
-#include "panels/arrangement.hpp"
+#include "session/arrangement.hpp"
 
 #include <gtest/gtest.h>
 

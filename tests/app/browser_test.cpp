@@ -1,5 +1,5 @@
 // The file browser of the dialogs: its entries and its keys.
-#include "panels/browser.hpp"
+#include "session/folder_entries.hpp"
 
 #include <gtest/gtest.h>
 

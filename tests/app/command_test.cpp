@@ -61,6 +61,8 @@ const std::vector<Command> one_of_each{
     command::DefaultPlane{},
     command::ShowPlane{"gap", "sin(y) + 1"},
     command::SetCamera{"zeno"},
+    command::Turn{-30.5, 45.0},
+    command::TurnBack{},
     command::Speed{0.001},
     command::Loop{true},
     command::StepEvents{-1},
@@ -215,7 +217,7 @@ TEST(Command, IsListedOnce) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 67u) << list;
+    EXPECT_EQ(all.size(), 68u) << list;
 }
 
 TEST(Command, ListsAllWhereNoneIsNear) {

@@ -4,7 +4,7 @@
 #include "app/program.hpp"
 #include "figure/mechanism_scene.hpp"
 #include "output/output.hpp"
-#include "panels/event_list.hpp"
+#include "session/event_rows.hpp"
 #include "session/replay_script.hpp"
 #include "simulate/simulate.hpp"
 

@@ -1,6 +1,7 @@
 // The cameras of the mechanism view: commands, menu, mouse, scale bar.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -99,6 +100,77 @@ TEST(CameraMouse, MiddleDragMovesThePictureAlsoOverTheBody) {
     EXPECT_NEAR(hands.state.places.at("body").x - body.x, 50.0, 1.0);
     EXPECT_NEAR(hands.state.places.at("body").y - body.y, 30.0, 1.0);
     EXPECT_EQ(*hands.session.value("x"), 0.0) << "the body is not what moves";
+}
+
+// Drags with a button from an empty place of the picture.
+void drag_beside(Hands& hands, bool Input::*button, double across, double down) {
+    const Rectangle world = hands.state.places.at("mechanism");
+    hands.hand.mouse_x = world.x + 0.9 * world.width, hands.hand.mouse_y = world.y + 0.1 * world.height;
+    hands.rest(2);
+    hands.hand.*button = true;
+    hands.rest(1);
+    for (int i = 0; i < 10; ++i) {
+        hands.hand.mouse_x -= 0.1 * across;
+        hands.hand.mouse_y += 0.1 * down;
+        hands.frame();
+    }
+    hands.hand.*button = false;
+    hands.rest(2);
+}
+
+TEST(CameraMouse, TurnsASystemInSpace) {
+    Hands hands("ball_on_egg_crate");
+    const ViewAngles drawn = hands.session.direction();
+    EXPECT_FALSE(hands.session.scene().direction());
+    drag_beside(hands, &Input::left, 60.0, 20.0);
+    ASSERT_TRUE(hands.session.scene().direction());
+    EXPECT_EQ(*hands.session.scene().direction(), (ViewAngles{drawn.about - 30.0, drawn.tilt + 10.0}));
+    EXPECT_FALSE(hands.session.scene().look()) << "the camera still shows the whole run";
+    // A second drag goes on from there; the right button moves the picture.
+    drag_beside(hands, &Input::left, 20.0, 0.0);
+    EXPECT_EQ(hands.session.direction().about, drawn.about - 40.0);
+    const Rectangle body = hands.state.places.at("body");
+    drag_beside(hands, &Input::right, 40.0, 0.0);
+    EXPECT_EQ(hands.session.direction().about, drawn.about - 40.0);
+    EXPECT_NEAR(hands.state.places.at("body").x, body.x - 40.0, 1.0);
+    // Zoomed in, what is in the middle stays there.
+    const command::LookAt before = *hands.session.scene().look();
+    drag_beside(hands, &Input::left, 20.0, 0.0);
+    EXPECT_EQ(hands.session.scene().look()->width, before.width);
+    EXPECT_NE(hands.session.scene().look()->x, before.x);
+    const Rectangle world = hands.state.places.at("mechanism");
+    hands.state.places["corner"] = {world.x + 0.95F * world.width, world.y + 0.05F * world.height, 0.0F, 0.0F};
+    hands.double_click("corner");
+    EXPECT_FALSE(hands.session.scene().direction()) << "as the file draws it";
+    EXPECT_FALSE(hands.session.scene().look());
+    // In a plane there is nothing to turn: the picture moves.
+    Hands flat("ball_on_sine");
+    drag_beside(flat, &Input::left, 40.0, 0.0);
+    EXPECT_FALSE(flat.session.scene().direction());
+    EXPECT_TRUE(flat.session.scene().look());
+}
+
+TEST(TurnCommand, BelongsToTheSessionAndItsSystem) {
+    Session session = test::session("ball_on_egg_crate");
+    EXPECT_TRUE(session.apply(parse_command("turn 10 20")));
+    EXPECT_NE(to_text(session).find("turn 10 20\n"), std::string::npos) << to_text(session);
+    const std::vector<Command> steps = steps_to(session.scene());
+    EXPECT_TRUE(
+        std::any_of(steps.begin(), steps.end(), [](const Command& step) { return to_text(step) == "turn 10 20"; }));
+    ASSERT_NE(session.mechanism().space(), nullptr);
+    EXPECT_TRUE(session.apply(parse_command("set e 0.4")));
+    EXPECT_NE(session.mechanism().space(), nullptr) << "the next run is seen from there, too";
+    EXPECT_FALSE(session.apply(parse_command("turn 10 91")));
+    EXPECT_NE(session.error().find("from -90 to 90"), std::string::npos) << session.error();
+    EXPECT_TRUE(session.apply(parse_command("turn default")));
+    EXPECT_EQ(session.mechanism().space(), nullptr);
+    EXPECT_TRUE(session.apply(parse_command("turn 10 20")));
+    for (const char* other : {"open ball_round_post", "open ball_on_sine"}) {
+        EXPECT_TRUE(session.apply(parse_command(other)));
+        EXPECT_EQ(session.mechanism().space(), nullptr) << other;
+    }
+    EXPECT_FALSE(session.apply(parse_command("turn 10 20")));
+    EXPECT_NE(session.error().find("lies in a plane and cannot be turned"), std::string::npos) << session.error();
 }
 
 TEST(CameraPicture, SaysItsScaleAtEveryZoom) {

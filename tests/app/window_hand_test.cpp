@@ -230,6 +230,15 @@ TEST(Mechanism, ForcesHaveTheirValuesUnderTheMouse) {
     rough.point("body");
     ASSERT_TRUE(rough.session.now().contact);
     EXPECT_TRUE(rough.says("friction of")) << rough.letters();
+    // The arrow at the contact says them, too, and what the friction could be.
+    ASSERT_TRUE(rough.state.places.contains("force"));
+    rough.point("force");
+    EXPECT_TRUE(rough.says("normal force of")) << rough.letters();
+    EXPECT_TRUE(rough.says("of at most")) << rough.letters();
+    const Rectangle world = rough.state.places.at("mechanism");
+    rough.hand.mouse_x = world.x + 0.95 * world.width, rough.hand.mouse_y = world.y + 0.05 * world.height;
+    rough.rest(2);
+    EXPECT_FALSE(rough.says("normal force of")) << "beside the arrow there is nothing to say";
 }
 
 TEST(Marks, AClickWithinEightPixelsSelectsThatEvent) {

@@ -1,4 +1,4 @@
-#include "panels/arrangement.hpp"
+#include "session/arrangement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ void place_mechanism(Arrangement& parts, const Scene& scene, const Measures& m, 
     const float lower = timeline > 0.0F ? bottom - timeline - between : bottom;
     const float all_results = m.results ? m.results(width) : 0.0F;
     float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - column.y - least));
-    if (results < 0.4F * all_results) results = 0.0F;  // less than one line
+    if (results < 0.6F * all_results) results = 0.0F;  // less than one line and its margins
     const float over_results = results > 0.0F ? space : 0.0F;
     const float energy = energy_in(m, lower - results - over_results - space - column.y - least);
     const float under = lower - (energy > 0.0F ? energy + space : 0.0F);
