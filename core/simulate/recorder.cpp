@@ -37,8 +37,8 @@ namespace {
 
 // Reserves room for `more` elements. The system provides memory only for pages that are written, so a vector grows by a
 // large factor, which copies it rarely. Growing a vector briefly needs the memory of both copies. A large vector
-// therefore reserves address space for all that the run may record; with
-// addresses of 32 bits (on a page) there is none to spare.
+// therefore reserves address space for all that the run may record; with addresses of 32 bits (on a page) there is none
+// to spare.
 template <class Element>
 void make_room(std::vector<Element>& vector, std::size_t more, double max_bytes) {
     constexpr std::size_t large = std::size_t{8} << 20;  // bytes
