@@ -111,7 +111,7 @@ std::vector<std::complex<double>> free_multipliers(const ReturnMap& map, const S
     for (Index round = 0; flow > 0 && round < 2; ++round)
         reached.rightCols(r) -= reached.col(0) * (reached.col(0).transpose() * reached.rightCols(r));
     const MatrixXd across = range_of(reached.rightCols(r), r - flow);
-    std::vector<std::complex<double>> all = eigenvalues_of(across.transpose() * shot.M * across);
+    std::vector<std::complex<double>> all = eigenvalues_of(MatrixXd(across.transpose() * shot.M) * across);
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
         return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
     });

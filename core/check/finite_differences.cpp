@@ -1,12 +1,13 @@
 #include "check/finite_differences.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "check/simplified.hpp"
@@ -20,6 +21,31 @@ namespace mp = boost::multiprecision;
 using Real = mp::number<mp::backends::cpp_bin_float<50>, mp::et_off>;
 using Reals = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+// Solves A X = B for a square A by elimination with row pivots. No number of X is finite if a pivot is not larger than
+// `least`. Eigen's decompositions and products of this type would take a third of the time that this room takes to
+// compile.
+Matrix solution(Matrix A, Matrix X, const Real& least = 0) {
+    const Eigen::Index n = A.rows();
+    for (Eigen::Index k = 0; k < n; ++k) {
+        Eigen::Index pivot = k;
+        for (Eigen::Index i = k + 1; i < n; ++i)
+            if (abs(A(i, k)) > abs(A(pivot, k))) pivot = i;
+        if (!(abs(A(pivot, k)) > least)) return Matrix::Constant(n, X.cols(), std::numeric_limits<Real>::quiet_NaN());
+        A.row(k).swap(A.row(pivot));
+        X.row(k).swap(X.row(pivot));
+        for (Eigen::Index i = k + 1; i < n; ++i) {
+            const Real factor = A(i, k) / A(k, k);
+            A.row(i) -= factor * A.row(k);
+            X.row(i) -= factor * X.row(k);
+        }
+    }
+    for (Eigen::Index k = n; k-- > 0;) {
+        for (Eigen::Index i = k + 1; i < n; ++i) X.row(k) -= A(k, i) * X.row(i);
+        X.row(k) /= A(k, k);
+    }
+    return X;
+}
 
 struct PreciseState {
     Reals q, v;
@@ -110,8 +136,7 @@ class Differences {
                 Q[i] += inertia;
             }
         }
-        const Eigen::PartialPivLU<Matrix> inverse(M);
-        const Reals f = inverse.solve(Q - b), now = gaps_(at);
+        const Reals f = solution(M, Q - b), now = gaps_(at);
         // h along q + v t + f t^2/2
         const auto later = [&](const Real& t) {
             return PreciseState{at.q + at.v * t + f * (t * t / 2), at.v + f * t, at.t + t};
@@ -126,7 +151,7 @@ class Differences {
         const Matrix rows = joined(G, at);
         // W has a row for each gap, then one for each slip. Without rows there is nothing to solve.
         Matrix W;
-        if (rows.rows() > 0) W = rows * inverse.solve(Matrix(rows.transpose()));
+        if (rows.rows() > 0) W = rows.lazyProduct(solution(M, rows.transpose()));
         Reals accelerations(rows.rows());
         accelerations.head(m) = hddot;
         accelerations.tail(rows.rows() - m) = (slips_(later(step)) - slips_(later(-step))) / (2 * step);
@@ -182,7 +207,7 @@ class Differences {
             a[i] = accelerations[row];
             coupling[i] = W(k, row);
         }
-        const Reals forces = A.partialPivLu().solve(a);
+        const Reals forces = solution(A, a);
         return accelerations[k] - coupling.dot(forces);
     }
     // -dc_i/dt - sum_k (dc_i/dq_k - dc_k/dq_i) v_k, where c is dL/dv at v = 0.
@@ -241,13 +266,16 @@ class SurfacePoints {
         Reals values = functions_(at);
         for (int i = 0; i < 60 && is_finite(values); ++i, values = functions_(at)) {
             const Matrix G = values.tail(values.size() - 2 * count_).reshaped(at.q.size(), count_).transpose();
-            const Eigen::FullPivLU<Matrix> square(G * G.transpose());
-            if (!square.isInvertible()) return false;
+            const Matrix square = G.lazyProduct(G.transpose());
+            const Real least = count_ * std::numeric_limits<Real>::epsilon() * square.cwiseAbs().maxCoeff();
+            const auto back = [&](const Reals& x) -> Reals {
+                return G.transpose().lazyProduct(solution(square, x, least));
+            };
             if (values.head(count_).cwiseAbs().maxCoeff() < Real("1e-45")) {
-                at.v -= G.transpose() * square.solve(values.segment(count_, count_));
-                return true;
+                at.v -= back(values.segment(count_, count_));
+                return is_finite(at.v);
             }
-            at.q -= G.transpose() * square.solve(values.head(count_));
+            at.q -= back(values.head(count_));
         }
         return false;
     }

@@ -1,9 +1,10 @@
 #include "contacts/friction_modes.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "number/dense.hpp"
 
 namespace achilles {
 
@@ -129,10 +130,8 @@ FrictionMotion motion_in(const FrictionProblem& problem, Mode mode) {
             for (Index i = 0; i < count; ++i) A(i, k) = effect[unknowns.kept[static_cast<std::size_t>(i)]];
             b[k] = -start[unknowns.kept[static_cast<std::size_t>(k)]];
         }
-        Eigen::FullPivLU<MatrixXd> factors(A);
-        factors.setThreshold(1e-10);
-        motion.is_unique = factors.isInvertible();
-        const VectorXd z = factors.solve(b);
+        const auto [z, is_unique] = pivoted_solution(A, b, 1e-10);
+        motion.is_unique = is_unique;
         if (!z.allFinite() || (A * z - b).cwiseAbs().maxCoeff() > 1e-9 * (b.cwiseAbs().maxCoeff() + 1e-300))
             return motion;
         for (Index k = 0; k < count; ++k) motion.forces += z[k] * unknowns.columns[static_cast<std::size_t>(k)];

@@ -1,10 +1,10 @@
 #include "enclose/doubleton.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "number/dense.hpp"
 #include "number/jet.hpp"
 
 namespace achilles {
@@ -42,8 +42,7 @@ Matrix basis_along(const Matrix& columns, const Intervals& radii) {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return reach[a] > reach[b]; });
     Matrix ordered(columns.rows(), columns.cols());
     for (std::size_t j = 0; j < n; ++j) ordered.col(index(j)) = columns.col(index(order[j]));
-    const Eigen::HouseholderQR<Matrix> qr(ordered);
-    return qr.householderQ() * Matrix::Identity(columns.rows(), columns.rows());
+    return orthogonal_basis(ordered);
 }
 
 }  // namespace

@@ -25,6 +25,16 @@ MatrixXd least_solution(const MatrixXd& A, const MatrixXd& B) {
 
 VectorXd solution(const MatrixXd& A, const VectorXd& b) { return A.partialPivLu().solve(b); }
 
+PivotedSolution pivoted_solution(const MatrixXd& A, const VectorXd& b, double threshold) {
+    Eigen::FullPivLU<MatrixXd> factors(A);
+    factors.setThreshold(threshold);
+    return {factors.solve(b), factors.isInvertible()};
+}
+
+MatrixXd orthogonal_basis(const MatrixXd& A) {
+    return Eigen::HouseholderQR<MatrixXd>(A).householderQ() * MatrixXd::Identity(A.rows(), A.rows());
+}
+
 MatrixXd range_of(const MatrixXd& A, Eigen::Index dimensions) {
     MatrixXd basis = MatrixXd::Zero(A.rows(), dimensions);
     for (Eigen::Index k = 0; k < dimensions; ++k) basis(k, k) = 1.0;

@@ -110,4 +110,7 @@ std::vector<bool> Program::inputs_of(std::size_t outputs) const {
     return needed;
 }
 
+template void Evaluator<double>::execute(std::size_t, std::size_t);
+template void Evaluator<Interval>::execute(std::size_t, std::size_t);
+
 }  // namespace achilles

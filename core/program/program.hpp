@@ -182,4 +182,7 @@ void Evaluator<Scalar>::execute(std::size_t first_run, std::size_t last_run) {
     }
 }
 
+extern template void Evaluator<double>::execute(std::size_t, std::size_t);
+extern template void Evaluator<Interval>::execute(std::size_t, std::size_t);
+
 }  // namespace achilles

@@ -56,7 +56,8 @@ struct Transport {
         const auto J = link.J.topLeftCorner(size, size);
         error = J * error;
         if (link.left_out.size() > 0) error += link.left_out.head(size);
-        covariance = J * covariance * J.transpose();
+        const MatrixXd moved = J * covariance;
+        covariance = moved * J.transpose();
     }
     // Adds the rounding of the stored state.
     void round(const State& state, const TangentLayout& tangent) {
@@ -114,7 +115,7 @@ ErrorEstimate::FinalError at_end(const Transport& carried, const TangentLayout& 
     MatrixXd fixed = MatrixXd::Identity(carried.size, carried.size);
     fixed.col(TangentLayout::t()) -= rate.head(carried.size);
     const VectorXd error = fixed * carried.error;
-    const MatrixXd covariance = fixed * carried.covariance * fixed.transpose();
+    const MatrixXd moved = fixed * carried.covariance, covariance = moved * fixed.transpose();
     ErrorEstimate::FinalError end;
     end.q = error.segment(tangent.q(0), n);
     end.v = error.segment(tangent.v(0), n);

@@ -26,6 +26,13 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
+SystemDescription::SystemDescription() = default;
+SystemDescription::SystemDescription(const SystemDescription&) = default;
+SystemDescription::SystemDescription(SystemDescription&&) noexcept = default;
+SystemDescription& SystemDescription::operator=(const SystemDescription&) = default;
+SystemDescription& SystemDescription::operator=(SystemDescription&&) noexcept = default;
+SystemDescription::~SystemDescription() = default;
+
 InputError SystemDescription::error(Location at, const std::string& message, const std::string& hint) const {
     return {file, at, message, hint, line_of(source_text, at.line)};
 }

@@ -155,6 +155,14 @@ struct MechanismSummary {
 };
 
 struct SystemDescription {
+    // Compiled once: each is thousands of instructions.
+    SystemDescription();
+    SystemDescription(const SystemDescription&);
+    SystemDescription(SystemDescription&&) noexcept;
+    SystemDescription& operator=(const SystemDescription&);
+    SystemDescription& operator=(SystemDescription&&) noexcept;
+    ~SystemDescription();
+
     std::string file;         // path as given; "<text>" for typed text
     std::string source_text;  // the whole file, to show lines in errors
     std::string title, source;

@@ -1,6 +1,5 @@
 #include "figure/body.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -15,15 +14,15 @@ namespace {
 // Solves A x = b for a symmetric positive semidefinite 2 x 2 matrix A, in the range of A only: for a body that moves on
 // a line, only that direction counts.
 Eigen::Vector2d solved(const Eigen::Matrix2d& A, const Eigen::Vector2d& b) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts(A);
-    Eigen::Vector2d x = Eigen::Vector2d::Zero();
-    for (int i = 0; i < 2; ++i) {
-        const double eigenvalue = parts.eigenvalues()[i];
-        if (!(eigenvalue > 1e-9 * parts.eigenvalues().maxCoeff()) || !(eigenvalue > 0.0)) continue;
-        const Eigen::Vector2d direction = parts.eigenvectors().col(i);
-        x += direction * direction.dot(b) / eigenvalue;
-    }
-    return x;
+    const double det = A(0, 0) * A(1, 1) - A(0, 1) * A(0, 1);
+    const double largest = (A(0, 0) + A(1, 1)) / 2.0 + std::hypot((A(0, 0) - A(1, 1)) / 2.0, A(0, 1));
+    if (!(largest > 0.0)) return Eigen::Vector2d::Zero();
+    const double smallest = det / largest;
+    if (smallest > 1e-9 * largest)
+        return Eigen::Vector2d(A(1, 1) * b[0] - A(0, 1) * b[1], A(0, 0) * b[1] - A(0, 1) * b[0]) / det;
+    const int column = A(0, 0) >= A(1, 1) ? 0 : 1;
+    const Eigen::Vector2d direction = A.col(column).normalized();
+    return direction * direction.dot(b) / largest;
 }
 
 Eigen::Matrix2d gram(const Vector& jx, const Vector& jy) {

@@ -182,8 +182,8 @@ bool ends_are_outside(const Drawing& seen, const std::vector<Point>& line) {
 
 // Whether an expression names a coordinate or t.
 bool names_what_moves(const SystemDescription& description, std::string_view text) {
-    const std::vector<std::string> names = names_in(text);
-    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    const std::vector<std::string> all = names_in(text);
+    return std::any_of(all.begin(), all.end(), [&](const std::string& name) {
         return name == "t" || std::any_of(description.coordinates.begin(), description.coordinates.end(),
                                           [&](const CoordinateDescription& c) { return c.name == name; });
     });

@@ -14,8 +14,8 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t largest_picture = std::size_t{1} << 30;  // bytes
-constexpr std::size_t max_words = 2000;                        // the longest stored command line that is read
+constexpr std::size_t largest_to_reproduce = std::size_t{1} << 30;  // bytes
+constexpr std::size_t max_words = 2000;                             // the longest stored command line that is read
 
 // Adds the name of the picture to errors.
 template <class Work>
@@ -57,8 +57,8 @@ int reproduce(const std::string& picture, const std::string& out) {
     OutputFiles files;
     files.protect_input(picture);
     if (!out.empty()) files.add(out);
-    const std::string before = read_text(picture, largest_picture);
-    if (before.size() > largest_picture) throw InputError(picture, {}, "this file is too large for a picture");
+    const std::string before = read_text(picture, largest_to_reproduce);
+    if (before.size() > largest_to_reproduce) throw InputError(picture, {}, "this file is too large for a picture");
     const Origin origin = with_name(picture, [&] { return origin_of(before); });
     if (!out.empty()) format_for(out, picture_format(before));
     PictureJob job(origin);
