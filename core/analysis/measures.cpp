@@ -9,7 +9,7 @@
 
 #include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
-#include "model/option_expressions.hpp"
+#include "model/read_expressions.hpp"
 #include "number/float_environment.hpp"
 #include "sensitivity/chain.hpp"
 #include "simulate/sampler.hpp"

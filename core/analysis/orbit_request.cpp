@@ -11,7 +11,6 @@
 #include "analysis/sweep.hpp"
 #include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
-#include "model/option_expressions.hpp"
 #include "model/read_expressions.hpp"
 #include "sensitivity/chain.hpp"
 #include "simulate/simulate.hpp"

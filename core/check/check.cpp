@@ -5,7 +5,6 @@
 
 #include "check/equations_on_page.hpp"
 #include "check/finite_differences.hpp"
-#include "check/mechanism_on_page.hpp"
 #include "check/simplified.hpp"
 #include "model/model.hpp"
 #include "output/contacts.hpp"
@@ -251,7 +250,12 @@ std::string check_report(const Model& model, const Run& run, double deriving, No
     const SimplifiedEquations simplified(model, run);
     const MaxDifference found = compare_with_differences(model, run, simplified);
     disagreement = found.largest();
-    return Report(model, run, simplified, notation).write(found, deriving);
+    return check_report(model, run, deriving, notation, simplified, found);
+}
+
+std::string check_report(const Model& model, const Run& run, double deriving, Notation notation,
+                         const SimplifiedEquations& simplified, const MaxDifference& disagreement) {
+    return Report(model, run, simplified, notation).write(disagreement, deriving);
 }
 
 namespace {

@@ -19,6 +19,8 @@ class SimplifiedEquations;
 // time to derive the model (s), is the only number that differs between runs. `disagreement` returns the largest
 // difference.
 std::string check_report(const Model& model, const Run& run, double deriving, Notation notation, double& disagreement);
+std::string check_report(const Model& model, const Run& run, double deriving, Notation notation,
+                         const SimplifiedEquations& simplified, const MaxDifference& disagreement);
 
 // The default output, at most a page for a small system: whether the derived equations agree with differences of L,
 // when impacts end in a Zeno point, and the equations of motion. check_report() has all details.

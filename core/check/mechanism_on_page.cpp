@@ -1,4 +1,4 @@
-#include "check/mechanism_on_page.hpp"
+#include "check/equations_on_page.hpp"
 
 #include <fmt/args.h>
 #include <fmt/format.h>

@@ -7,7 +7,6 @@
 #include "model/friction_law.hpp"
 #include "model/read_expressions.hpp"
 #include "model/scopes.hpp"
-#include "model/size_limit.hpp"
 #include "model/unpressed.hpp"
 #include "number/float_environment.hpp"
 #include "number/jet.hpp"

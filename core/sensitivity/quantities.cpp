@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "expression/parse.hpp"
-#include "model/option_expressions.hpp"
+#include "model/read_expressions.hpp"
 #include "sensitivity/gradient.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/sampler.hpp"

@@ -16,7 +16,6 @@
 #include "system/fields.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
-#include "system/rewrite.hpp"
 #include "system/units.hpp"
 
 namespace achilles {

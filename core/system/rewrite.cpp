@@ -1,4 +1,4 @@
-#include "system/rewrite.hpp"
+#include "system/read_tables.hpp"
 
 #include <fmt/format.h>
 
