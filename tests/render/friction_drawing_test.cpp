@@ -40,7 +40,7 @@ run = {end_time = 3.0}
 constexpr double slope = 0.4363323129985824, weight = 2.0 * 9.81, stop = 0.42192256;
 
 // A disc with backspin: it skids until 1.699 s, then it rolls.
-const std::string disc = R"-(
+const std::string spinning_disc = R"-(
 coordinate = [
     {name = "x", rate = 2.0, unit = "m", range = [-3.0, 3.0], rate_range = [-4.0, 4.0]},
     {name = "y", start = 0.2, unit = "m", range = [0.2, 1.5], rate_range = [-3.0, 3.0]},
@@ -278,7 +278,7 @@ TEST(FrictionCone, IsDrawnAtTheContact) {
 
 // The center of a disc cannot carry the torque of friction; the contact is at the rim.
 TEST(FrictionCone, OfADiscIsAtItsRim) {
-    RoughScene spinning(disc);
+    RoughScene spinning(spinning_disc);
     const Sample now = spinning.at(0.5);
     const auto marks = spinning.marks.at(now);
     ASSERT_EQ(marks.size(), 1u);
