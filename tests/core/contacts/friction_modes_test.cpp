@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace achilles {
 namespace {
@@ -81,6 +82,33 @@ TEST(FrictionModes, StickWinsInsideTheConeOfRest) {
     EXPECT_EQ(choice.motions.size(), 2u);  // sliding obeys the laws, too
     EXPECT_EQ(choice.motions[0].mode.state(0), held);
     EXPECT_EQ(choice.motions[1].mode.state(0), slip_plus);
+}
+
+// The force of a joint that slides is known: its level, against the slip.
+TEST(FrictionModes, AJointPushesAgainstItsSlip) {
+    const FrictionProblem problem{{{0, -1, 0, 0.3, 0.3, false, {held, slip_plus, slip_minus}}},
+                                  Eigen::MatrixXd::Constant(1, 1, 2.0),
+                                  VectorXd::Constant(1, 1.0)};
+    for (const auto& [state, force] : {std::pair(slip_plus, -0.3), std::pair(slip_minus, 0.3)}) {
+        const FrictionMotion motion = motion_in(problem, Mode().with(0, state));
+        EXPECT_EQ(motion.forces[0], force);
+        EXPECT_EQ(motion.accelerations[0], 1.0 + 2.0 * force);
+    }
+    const FrictionChoice choice = choose_mode(problem);
+    ASSERT_EQ(choice.kind, FrictionChoice::Kind::one);
+    EXPECT_EQ(choice.motions[0].mode.state(0), slip_plus);
+}
+
+// A coefficient that falls with the speed: whether an impact sticks is decided at the speed e |u-|/(1 + e), and how much
+// it slows a slide at the speed at the end of the compression.
+TEST(FrictionImpact, SticksByTheCoefficientOfItsSpeed) {
+    FrictionImpactProblem problem = one_impact(matrix(1.0, 0.0, 1.0), {-1.0, 0.9}, 0.0, 0.5);
+    problem.is_constant = false;
+    problem.coefficient = [](std::size_t, double speed) { return 0.7 - 0.5 * speed; };
+    const FrictionImpact impact = friction_impact(problem);
+    ASSERT_EQ(impact.kind, FrictionChoice::Kind::one);
+    EXPECT_EQ(impact.mode.state(0), slip_plus) << "0.9 > 1.5*mu(0.3), but not 1.5*mu(0)";
+    EXPECT_NEAR(impact.after[1], 0.15, 1e-12) << "mu(0.4) = 0.5";
 }
 
 TEST(FrictionImpact, KanesParadoxIsCapped) {

@@ -260,11 +260,8 @@ friction = "mu"
     }
 }
 
-// A box on two feet, whose slips are equal: it slides, stops on both, and slides again when the push exceeds what both
-// feet together can bear. How they share the friction force is not unique, and does not matter.
-TEST_P(Friction, SticksOnTwoFeet) {
-    const auto run =
-        run_of(R"-(coordinate = [{name = "x", rate = 1, force = "t/10"}, {name = "y", start = 1}, {name = "phi"}]
+// What a box on two feet is besides its coordinates; the slips of its feet are equal.
+constexpr const char* two_feet = R"-(
 lagrangian.kinetic = "(x'^2 + y'^2 + phi'^2)/2"
 lagrangian.potential = "y"
 [[constraint]]
@@ -279,8 +276,16 @@ gap = "y + sin(phi) - cos(phi)"
 restitution = 0
 slip = "x' - (sin(phi) - cos(phi))*phi'"
 friction = 0.5
-)-",
-               6.0, GetParam());
+)-";
+
+// A box on two feet: it slides, stops on both, and slides again when the push exceeds what both
+// feet together can bear. How they share the friction force is not unique, and does not matter.
+TEST_P(Friction, SticksOnTwoFeet) {
+    const auto run = run_of(
+        std::string(
+            R"(coordinate = [{name = "x", rate = 1, force = "t/10"}, {name = "y", start = 1}, {name = "phi"}])") +
+            two_feet,
+        6.0, GetParam());
     ASSERT_EQ(run.events.size(), 2u);
     const ContactSet both = ContactSet::of(0).with(1);
     EXPECT_EQ(run.events[0].kind, Kind::stick);
@@ -293,6 +298,42 @@ friction = 0.5
     EXPECT_NEAR(run.events[1].q[0], run.events[0].q[0], 1e-15);
     EXPECT_NEAR(run.end.v[0], 0.05, accuracy(GetParam()));
     EXPECT_NEAR(run.end.q[2], 0.0, 1e-15);
+}
+
+// The left foot leaves the ground while both stick, and the right one alone bears the push: the box turns about it.
+TEST_P(Friction, SticksOnTheFootThatStays) {
+    const auto run = run_of(
+        std::string(
+            R"(coordinate = [{name = "x", force = 0.1}, {name = "y", start = 1}, {name = "phi", force = "-t/10"}])") +
+            two_feet,
+        9.5, GetParam());
+    ASSERT_EQ(run.events.size(), 1u);
+    EXPECT_EQ(run.events[0].kind, Kind::release);
+    EXPECT_EQ(run.events[0].contacts, ContactSet::of(0));
+    EXPECT_NEAR(run.events[0].t, 9.0, accuracy(GetParam()));
+    EXPECT_EQ(run.events[0].mode.state(1), ContactState::held);
+    const double phi = run.end.q[2];
+    EXPECT_LT(run.end.v[2], -1e-4) << "it turns";
+    EXPECT_NEAR(run.end.v[0], (std::sin(phi) - std::cos(phi)) * run.end.v[2], 1e-12);
+}
+
+// The impacts of a ball that nothing couples with a sliding block leave the block's slip as it is.
+TEST_P(Friction, SlidesOnBesideABallThatBounces) {
+    const auto run = run_of(R"-(coordinate = [{name = "x", rate = -1}, {name = "y"}, {name = "z", start = 1}]
+lagrangian.kinetic = "(x'^2 + y'^2 + z'^2)/2"
+lagrangian.potential = "y + z"
+constraint = [
+    {name = "block", gap = "y", restitution = 0, slip = "x'", friction = 0.1},
+    {name = "ball", gap = "z", restitution = 0.5},
+]
+)-",
+                            12.0, GetParam());
+    ASSERT_FALSE(run.events.empty());
+    const Event& last = run.events.back();
+    EXPECT_EQ(last.kind, Kind::stick);
+    EXPECT_NEAR(last.t, 10.0, accuracy(GetParam()));
+    EXPECT_NEAR(run.end.q[0], -5.0, accuracy(GetParam()));
+    EXPECT_GT(run.events.size(), 5u) << "the ball bounces meanwhile";
 }
 
 // A point that slides over hills: it leaves them, lands, and stops in a valley.
