@@ -64,6 +64,56 @@ constraint = [{name = "left", between = ["block.lower_left", "floor"], friction 
     EXPECT_NEAR(run.end.q[2], 0.0, 1e-12);
 }
 
+// A lift of t takes the load 1 - t off a block that sticks, and the force c (1 - t) along the floor goes with it. So the
+// contact force and both limits of friction vanish at once, in an order that rounding decides: the block flies off, and
+// at t = 2 it is at x = -c/6 and y = 1/6.
+TEST(FrictionRelease, OfABlockWhoseLimitsVanishWithItsForce) {
+    for (const double mu : {0.1, 0.3, 0.7, 1.3}) {
+        for (const double part : {-0.9, -1.0 / 3.0, 0.0, 0.1, 0.7}) {
+            const double c = part * mu;
+            SCOPED_TRACE(fmt::format("mu = {}, c = {}", mu, c));
+            const std::string text = fmt::format(
+                R"-(coordinate = [{{name = "x", force = "{}*(1 - t)"}}, {{name = "y", force = "t"}}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "y"
+constraint = [{{name = "foot", gap = "y", restitution = 0, slip = "x'", friction = {}}}]
+)-",
+                c, mu);
+            for (const bool taylor : {true, false}) {
+                const auto run = simulate_text(
+                    text, 2.0, taylor ? nullptr : +[](Options& options) {
+                        options.method = Method::dopri5;
+                        options.tolerance = 1e-10;
+                    });
+                ASSERT_EQ(run.outcome.kind, Ending::end_time) << run.outcome.message;
+                ASSERT_EQ(run.events.size(), 1u);
+                EXPECT_TRUE(run.events[0].is_release());
+                EXPECT_NEAR(run.events[0].t, 1.0, 1e-14);
+                EXPECT_NEAR(run.end.q[0], -c / 6.0, taylor ? 1e-12 : 1e-8);
+                EXPECT_NEAR(run.end.q[1], 1.0 / 6.0, taylor ? 1e-12 : 1e-8);
+            }
+        }
+    }
+}
+
+// Forces of x = 1 that change by 20 with the last bit of x: whether the foot is pressed and whether the joint holds is
+// true of the numbers, but not of all states within rounding.
+TEST(FrictionDecision, HoldsForAllStatesWithinRounding) {
+    const char* const foot = R"-(coordinate = [{name = "x", start = 1}, {name = "y"}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "y*(1 + 1e17*(x - 1))"
+friction = [{name = "joint", slip = "x'", level = 1}]
+constraint = [{name = "foot", gap = "y", restitution = 0}]
+)-";
+    const char* const joint = R"-(coordinate = [{name = "x", start = 1, force = "0.5 + 1e17*(x - 1)"}]
+lagrangian.kinetic = "x'^2/2"
+lagrangian.potential = "0"
+friction = [{name = "joint", slip = "x'", level = 1}]
+)-";
+    for (const char* const text : {foot, joint})
+        expect_outcome(simulate_text(text, 1.0), Ending::undecided, "cannot decide whether");
+}
+
 // The slider of a crank lies on two corners, is pulled off, and lands on the other side, five times. With friction 0 the
 // run is that without friction.
 TEST(FrictionRelease, OfASliderWithClearanceGoesOnToItsEnd) {
