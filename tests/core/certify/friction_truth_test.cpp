@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "certify/friction_beside.hpp"
 #include "certify/friction_tails.hpp"
 
@@ -19,8 +21,8 @@ void expect_true(const FrictionTails& tails) {
 
 }  // namespace
 
-TEST(FrictionTruth, CertificatesOfSlidingHold) { expect_true(check_friction_tails(false, 300, 1)); }
-TEST(FrictionTruth, CertificatesOfStickingHold) { expect_true(check_friction_tails(true, 300, 2)); }
+TEST(FrictionTruth, CertificatesOfSlidingHold) { expect_true(check_friction_tails(false, 100, 1)); }
+TEST(FrictionTruth, CertificatesOfStickingHold) { expect_true(check_friction_tails(true, 100, 2)); }
 // 2 000 certificates of each kind; takes minutes.
 TEST(FrictionTruth, DISABLED_ManyCertificatesHold) {
     for (const bool sticks : {false, true}) {
@@ -42,14 +44,18 @@ struct Beside {
 void PrintTo(const Beside& beside, std::ostream* stream) { *stream << beside.name; }
 class FrictionBeside : public testing::TestWithParam<Beside> {};
 
-TEST_P(FrictionBeside, CertificatesHold) {
-    const Beside& beside = GetParam();
-    const BesideHeld tally = check_bouncing_beside(beside.held, beside.bouncing, beside.trials, 1, beside.capped > 0);
+// With 1/part of the trials. Their number of certificates varies, so half of the share of a part is enough.
+void expect_certificates_to_hold(const Beside& beside, int part) {
+    const auto least = [&](int all) { return part == 1 ? all : (all + 2 * part - 1) / (2 * part); };
+    const BesideHeld tally =
+        check_bouncing_beside(beside.held, beside.bouncing, beside.trials / part, 1, beside.capped > 0);
     EXPECT_EQ(tally.violations, 0) << tally.first_failure;
-    EXPECT_GE(tally.proved, beside.proved);
-    EXPECT_GE(tally.capped, beside.capped);
+    EXPECT_GE(tally.proved, least(beside.proved));
+    EXPECT_GE(tally.capped, least(beside.capped));
     EXPECT_LE(tally.closest, 1.0);
 }
+TEST_P(FrictionBeside, CertificatesHold) { expect_certificates_to_hold(GetParam(), GetParam().capped > 0 ? 2 : 5); }
+TEST_P(FrictionBeside, DISABLED_ManyCertificatesHold) { expect_certificates_to_hold(GetParam(), 1); }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, FrictionBeside,
                          testing::Values(Beside{"smooth_beside_smooth", Rubbing::none, Rubbing::none, 50, 30, 0},
