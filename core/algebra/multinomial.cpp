@@ -1,6 +1,7 @@
 #include "algebra/multinomial.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace achilles {
 
@@ -201,18 +202,34 @@ std::uint64_t power_mod(std::uint64_t base, std::uint64_t exponent) {
     return result;
 }
 
-// The values at which the other atoms are evaluated: arbitrary fixed numbers.
-std::uint64_t value_of(std::size_t atom) { return (0x9E3779B97F4A7C15ULL * (atom + 3) >> 20) % prime; }
+// The values at which the other atoms are evaluated are arbitrary fixed numbers. Their powers are computed once.
+using Powers = std::array<std::array<std::uint32_t, 256>, max_atoms>;
+const Powers& powers_of_values() {
+    static const std::unique_ptr<const Powers> powers = [] {
+        auto table = std::make_unique<Powers>();
+        for (std::size_t atom = 0; atom < max_atoms; ++atom) {
+            const std::uint64_t value = (0x9E3779B97F4A7C15ULL * (atom + 3) >> 20) % prime;
+            std::uint64_t power = 1;
+            for (std::uint32_t& place : (*table)[atom]) {
+                place = static_cast<std::uint32_t>(power);
+                power = power * value % prime;
+            }
+        }
+        return table;
+    }();
+    return *powers;
+}
 
 // The polynomial in one atom modulo the prime, with the other atoms at fixed values; ascending powers.
 std::vector<std::uint64_t> image(const Multinomial& a, std::size_t atom) {
     std::vector<std::uint64_t> result(static_cast<std::size_t>(a.degree(atom)) + 1, 0);
+    const Powers& powers = powers_of_values();
     for (const Term& term : a.terms()) {
         Integer residue = term.coefficient % prime;
         if (residue < 0) residue += prime;
         auto value = residue.convert_to<std::uint64_t>();
         for (std::size_t i = 0; i < max_atoms; ++i)
-            if (i != atom && term.powers[i] > 0) value = value * power_mod(value_of(i), term.powers[i]) % prime;
+            if (i != atom && term.powers[i] > 0) value = value * powers[i][term.powers[i]] % prime;
         std::uint64_t& place = result[term.powers[atom]];
         place = (place + value) % prime;
     }
