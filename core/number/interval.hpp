@@ -21,6 +21,10 @@
 #include <cmath>
 #include <limits>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #if defined(__FAST_MATH__) || FLT_EVAL_METHOD != 0
 #error "Interval needs IEEE double arithmetic: no -ffast-math, no x87"
 #endif
@@ -56,20 +60,49 @@ inline double sum_down(double x) {
     return y - epsilon * std::abs(y);
 }
 
+// Two numbers that one instruction of the processor computes together.
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+
+#ifdef __SSE2__
+inline Pair least_of(Pair a, Pair b) { return _mm_min_pd(a, b); }
+inline Pair most_of(Pair a, Pair b) { return _mm_max_pd(a, b); }  // b if one of them is NaN
+inline Pair size_of(Pair a) { return _mm_andnot_pd(Pair{-0.0, -0.0}, a); }
+inline Pair swapped(Pair a) { return _mm_shuffle_pd(a, a, 1); }
+inline bool has_nan(Pair a, Pair b) { return _mm_movemask_pd(_mm_cmpunord_pd(a, b)) != 0; }
+#else
+inline Pair least_of(Pair a, Pair b) { return a < b ? a : b; }
+inline Pair most_of(Pair a, Pair b) { return a > b ? a : b; }
+inline Pair size_of(Pair a) { return Pair{std::abs(a[0]), std::abs(a[1])}; }
+inline Pair swapped(Pair a) { return Pair{a[1], a[0]}; }
+inline bool has_nan(Pair a, Pair b) {
+    return std::isnan(a[0]) || std::isnan(a[1]) || std::isnan(b[0]) || std::isnan(b[1]);
+}
+#endif
+
+// up() and sum_up() of both numbers.
+inline Pair up(Pair x) {
+    const Pair y = most_of(Pair{-largest, -largest}, x);
+    return y + (epsilon * size_of(y) + least);
+}
+inline Pair sum_up(Pair x) {
+    const Pair y = most_of(Pair{-largest, -largest}, x);
+    return y + epsilon * size_of(y);
+}
+
 }  // namespace rounding
 
 class Interval {
  public:
-    Interval() = default;                   // [0, 0]
-    Interval(double x) : Interval(x, x) {}  // NOLINT: a double is a point
-    Interval(int x) : lo_(x), hi_(x) {}     // NOLINT
+    Interval() = default;                                                        // [0, 0]
+    Interval(double x) : Interval(x, x) {}                                       // NOLINT: a double is a point
+    Interval(int x) : ends_{-static_cast<double>(x), static_cast<double>(x)} {}  // NOLINT
     // Undefined unless it is a set of reals: lo > hi, a NaN, lo = +inf and hi = -inf are undefined.
-    Interval(double lo, double hi) : lo_(lo), hi_(hi) {
+    Interval(double lo, double hi) : ends_{-lo, hi} {
         if (!(lo <= hi) || lo > rounding::largest || hi < -rounding::largest) *this = undefined();
     }
 
-    double lo() const { return lo_; }
-    double hi() const { return hi_; }
+    double lo() const { return 0.0 - ends_[0]; }
+    double hi() const { return ends_[1]; }
 
     static Interval pi() { return trusted(0x1.921fb54442d18p+1, 0x1.921fb54442d19p+1); }
     static Interval undefined() {
@@ -79,51 +112,55 @@ class Interval {
     // The real line.
     static Interval everything() { return trusted(-rounding::infinity, rounding::infinity); }
 
-    bool is_defined() const { return lo_ <= hi_; }
-    bool contains(double x) const { return lo_ <= x && x <= hi_; }
-    bool contains(const Interval& x) const { return lo_ <= x.lo_ && x.hi_ <= hi_; }
+    bool is_defined() const { return lo() <= hi(); }
+    bool contains(double x) const { return lo() <= x && x <= hi(); }
+    bool contains(const Interval& x) const { return lo() <= x.lo() && x.hi() <= hi(); }
 
     Interval& operator+=(const Interval& b) { return *this = *this + b; }
     Interval& operator-=(const Interval& b) { return *this = *this - b; }
     Interval& operator*=(const Interval& b) { return *this = *this * b; }
     Interval& operator/=(const Interval& b) { return *this = *this / b; }
 
-    friend Interval operator-(const Interval& a) { return trusted(-a.hi_, -a.lo_); }
+    friend Interval operator-(const Interval& a) { return Interval(rounding::swapped(a.ends_)); }
     friend Interval operator+(const Interval& a, const Interval& b) {
-        return trusted(rounding::sum_down(a.lo_ + b.lo_), rounding::sum_up(a.hi_ + b.hi_));
+        return Interval(rounding::sum_up(a.ends_ + b.ends_));
     }
     friend Interval operator-(const Interval& a, const Interval& b) {
-        return trusted(rounding::sum_down(a.lo_ - b.hi_), rounding::sum_up(a.hi_ - b.lo_));
+        return Interval(rounding::sum_up(a.ends_ + rounding::swapped(b.ends_)));
     }
     friend Interval operator*(const Interval& a, const Interval& b) {
-        return corners(a, b, a.lo_ * b.lo_, a.lo_ * b.hi_, a.hi_ * b.lo_, a.hi_ * b.hi_);
+        return corners(a, b, a.ends_ * b.ends_, a.ends_ * rounding::swapped(b.ends_));
     }
     friend Interval operator/(const Interval& a, const Interval& b) {
-        if (!(b.lo_ > 0.0 || b.hi_ < 0.0)) return undefined();
-        return corners(a, b, a.lo_ / b.lo_, a.lo_ / b.hi_, a.hi_ / b.lo_, a.hi_ / b.hi_);
+        if (!(b.lo() > 0.0 || b.hi() < 0.0)) return undefined();
+        return corners(a, b, a.ends_ / b.ends_, a.ends_ / rounding::swapped(b.ends_));
     }
 
     // [lo, hi] without a check: the caller ensures lo <= hi, or both NaN.
-    static Interval trusted(double lo, double hi) {
-        Interval result;
-        result.lo_ = lo;
-        result.hi_ = hi;
-        return result;
-    }
+    static Interval trusted(double lo, double hi) { return Interval(rounding::Pair{-lo, hi}); }
 
  private:
-    // The hull of four corner values, widened. If the operands are defined, a NaN corner is 0 inf or inf / inf. Taking
-    // it as 0 is sound: its limits lie in the hull of 0 and the other three corners.
-    static Interval corners(const Interval& a, const Interval& b, double p, double q, double r, double s) {
-        if (std::isnan(p + q + r + s)) {  // a NaN corner, or only the sum is inf - inf
-            if (!a.is_defined() || !b.is_defined()) return undefined();
-            for (double* corner : {&p, &q, &r, &s}) *corner = std::isnan(*corner) ? 0.0 : *corner;
-        }
-        return trusted(rounding::down(std::min(std::min(p, q), std::min(r, s))),
-                       rounding::up(std::max(std::max(p, q), std::max(r, s))));
+    explicit Interval(rounding::Pair ends) : ends_(ends) {}
+
+    // The hull of the four corner values (p, s) and (-q, -r), widened.
+    static Interval corners(const Interval& a, const Interval& b, rounding::Pair ps, rounding::Pair qr) {
+        if (rounding::has_nan(ps, qr)) return corners_with_nan(a, b, ps, qr);
+        const rounding::Pair one{qr[0], ps[0]}, other{qr[1], ps[1]};
+        return Interval(rounding::up(
+            rounding::most_of(rounding::most_of(one, other), -rounding::swapped(rounding::least_of(one, other)))));
+    }
+    // If the operands are defined, a NaN corner is 0 inf or inf / inf. Taking it as 0 is sound: its limits lie in the
+    // hull of 0 and the other three corners.
+    [[gnu::noinline, gnu::cold]] static Interval corners_with_nan(const Interval& a, const Interval& b,
+                                                                  rounding::Pair ps, rounding::Pair qr) {
+        if (!a.is_defined() || !b.is_defined()) return undefined();
+        const auto number = [](double x) { return std::isnan(x) ? 0.0 : x; };
+        return corners(a, b, rounding::Pair{number(ps[0]), number(ps[1])},
+                       rounding::Pair{number(qr[0]), number(qr[1])});
     }
 
-    double lo_ = 0.0, hi_ = 0.0;
+    // (-lo, hi): both are rounded up, and a change of sign is a swap.
+    rounding::Pair ends_{};
 };
 
 // --- Comparisons. The result is false unless the relation is proved.

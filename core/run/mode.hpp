@@ -37,12 +37,14 @@ class Mode {
     constexpr bool is_free() const { return held().empty(); }
     // Held contacts whose slip stays 0 because that of others does.
     constexpr ContactSet implied() const {
-        const auto flags = [this](std::uint32_t shift) {
+        const auto half = [this](std::uint32_t shift) {
             return static_cast<std::uint32_t>(bits_ >> (first_flag + shift) & 0xFFu);
         };
-        return ContactSet(flags(0) | flags(high) << 8u);
+        return ContactSet(half(0) | half(high) << 8u);
     }
-    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact), exceptions_); }
+    constexpr Mode with_implied_slip(std::size_t contact) const {
+        return Mode(bits_ | flags(ContactSet::of(contact).bits_), exceptions_);
+    }
     // The contacts for which held(NAME) is 1 in the forces (theory-modes.md 5): the held ones, with two exceptions.
     constexpr ContactSet seen_by_forces() const { return held().without(silent()).with(acting()); }
     // Open contacts that act on the forces as held ones do. Only derivations and decisions have such modes.
@@ -76,8 +78,7 @@ class Mode {
 
     constexpr Mode with(ContactSet contacts, ContactState state) const {
         const std::uint64_t set = contacts.bits_;
-        std::uint64_t kept = bits_ & ~(set | set << high);
-        for (const std::size_t i : contacts.within(implied())) kept &= ~flag(i);
+        const std::uint64_t kept = bits_ & ~(set | set << high | flags(set));
         return Mode(kept | low_bits(set, state) | high_bits(set, state), exceptions_.without(contacts));
     }
     constexpr Mode with(std::size_t contact, ContactState state) const { return with(ContactSet::of(contact), state); }
@@ -99,8 +100,8 @@ class Mode {
                                    all = (1u << (max_contacts + max_joints)) - 1u;
     // Eight flags in each half: the slip of a held contact is implied.
     static constexpr std::uint32_t first_flag = 24;
-    static constexpr std::uint64_t flag(std::size_t contact) {
-        return std::uint64_t{1} << (first_flag + contact % 8 + high * (contact / 8 % 2));
+    static constexpr std::uint64_t flags(std::uint64_t set) {
+        return (set & 0xFFu) << first_flag | (set >> 8u & 0xFFu) << (first_flag + high);
     }
     static constexpr std::uint64_t low_bits(std::uint64_t set, ContactState state) {
         return (static_cast<std::uint32_t>(state) & 1u) != 0 ? set : 0u;

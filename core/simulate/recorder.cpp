@@ -30,7 +30,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     // Capacity for a typical run. With less than 128 kB in all, glibc returns no memory to the system between two runs.
     trajectory_.events.reserve(36);
     trajectory_.pieces.reserve(80);
-    trajectory_.coefficients.reserve(6144);
+    trajectory_.coefficients.reserve(8192);
 }
 
 namespace {
