@@ -137,6 +137,21 @@ TEST(Interval, UnboundedSetsAreSets) {
     EXPECT_FALSE(Interval(-inf, -inf).is_defined());
 }
 
+// A corner of these products is 0 inf, in each of the four places.
+TEST(Interval, ProductsOfZeroAndUnboundedSetsAreDefined) {
+    for (const Interval& zero : {Interval(0.0), Interval(0.0, 1.0), Interval(-1.0, 0.0)}) {
+        const Interval left = zero * Interval::everything(), right = Interval::everything() * zero;
+        EXPECT_TRUE(left.is_defined() && left.contains(0.0));
+        EXPECT_TRUE(right.is_defined() && right.contains(0.0));
+    }
+    EXPECT_LE((Interval(0.0) * Interval::everything()).hi(), 1e-300);
+}
+
+TEST(Interval, WhatTouchesIsNotLess) {
+    EXPECT_FALSE(certainly_less(Interval(0.0, 1.0), Interval(1.0, 2.0)));
+    EXPECT_TRUE(certainly_less(Interval(0.0, 0.5), Interval(1.0, 2.0)));
+}
+
 TEST(Interval, UndefinedPropagatesAndProvesNothing) {
     const Interval one(1.0);
     const std::vector<Interval> undefined{
