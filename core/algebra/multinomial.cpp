@@ -1,7 +1,6 @@
 #include "algebra/multinomial.hpp"
 
 #include <algorithm>
-#include <memory>
 
 namespace achilles {
 
@@ -202,28 +201,28 @@ std::uint64_t power_mod(std::uint64_t base, std::uint64_t exponent) {
     return result;
 }
 
-// The values at which the other atoms are evaluated are arbitrary fixed numbers. Their powers are computed once.
-using Powers = std::array<std::array<std::uint32_t, 256>, max_atoms>;
-const Powers& powers_of_values() {
-    static const std::unique_ptr<const Powers> powers = [] {
-        auto table = std::make_unique<Powers>();
+// Powers of the values at which the other atoms are evaluated, which are arbitrary fixed numbers.
+using PowersOfValues = std::array<std::array<std::uint32_t, 256>, max_atoms>;
+const PowersOfValues& powers_of_values() {
+    static const PowersOfValues all = [] {
+        PowersOfValues powers{};
         for (std::size_t atom = 0; atom < max_atoms; ++atom) {
             const std::uint64_t value = (0x9E3779B97F4A7C15ULL * (atom + 3) >> 20) % prime;
             std::uint64_t power = 1;
-            for (std::uint32_t& place : (*table)[atom]) {
+            for (std::uint32_t& place : powers[atom]) {
                 place = static_cast<std::uint32_t>(power);
                 power = power * value % prime;
             }
         }
-        return table;
+        return powers;
     }();
-    return *powers;
+    return all;
 }
 
 // The polynomial in one atom modulo the prime, with the other atoms at fixed values; ascending powers.
 std::vector<std::uint64_t> image(const Multinomial& a, std::size_t atom) {
     std::vector<std::uint64_t> result(static_cast<std::size_t>(a.degree(atom)) + 1, 0);
-    const Powers& powers = powers_of_values();
+    const PowersOfValues& powers = powers_of_values();
     for (const Term& term : a.terms()) {
         Integer residue = term.coefficient % prime;
         if (residue < 0) residue += prime;

@@ -25,6 +25,9 @@ struct OrbitNotFound : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// Where a period may start: no contact is closed and no joint sticks, so that all directions have derivatives.
+inline bool is_flight(Mode mode) { return mode.is_free() && mode.elements_in(ContactState::held).empty(); }
+
 // Unknowns of the shooting method: initial state, period, parameters.
 struct ShootingPoint {
     Eigen::VectorXd x;  // q, v

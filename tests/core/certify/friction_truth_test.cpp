@@ -44,6 +44,8 @@ struct Beside {
 void PrintTo(const Beside& beside, std::ostream* stream) { *stream << beside.name; }
 class FrictionBeside : public testing::TestWithParam<Beside> {};
 
+namespace {
+
 // With 1/part of the trials. Their number of certificates varies, so half of the share of a part is enough.
 void expect_certificates_to_hold(const Beside& beside, int part) {
     const auto least = [&](int all) { return part == 1 ? all : (all + 2 * part - 1) / (2 * part); };
@@ -54,6 +56,9 @@ void expect_certificates_to_hold(const Beside& beside, int part) {
     EXPECT_GE(tally.capped, least(beside.capped));
     EXPECT_LE(tally.closest, 1.0);
 }
+
+}  // namespace
+
 TEST_P(FrictionBeside, CertificatesHold) { expect_certificates_to_hold(GetParam(), GetParam().capped > 0 ? 2 : 5); }
 TEST_P(FrictionBeside, DISABLED_ManyCertificatesHold) { expect_certificates_to_hold(GetParam(), 1); }
 
