@@ -6,6 +6,7 @@
 // frame needs no extra memory.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 
 struct ImDrawCmd;
 struct ImDrawList;
+struct ImDrawVert;
 
 namespace achilles {
 
@@ -50,7 +52,18 @@ PixelArea clip_of(const ImDrawCmd& command);
 // The content of a curve or of tiles in the list, and the pixels that they may change; nothing for another command.
 std::span<const unsigned char> curve_or_tiles(const ImDrawList& list, const ImDrawCmd& command, PixelArea& area);
 
-// OpenGL part: the coverage mask and its two programs.
+// A curve as it is stored in a list: the whole pixels with its visible part, its width, its color and its points.
+// `uv.x` of a point says whether an edge leads to the next one.
+struct StoredCurve {
+    PixelArea area;
+    double width;
+    unsigned color;
+    std::span<const ImDrawVert> points;
+};
+constexpr float pen_down = 1.0F, pen_up = 0.0F;
+StoredCurve stored_curve(const ImDrawList& list, const ImDrawCmd& command);
+
+// OpenGL part: the coverage masks of the curves of a frame, and two programs.
 class CurvePainter {
  public:
     // `fineness` 2: the mask has twice the resolution and is averaged down.
@@ -59,22 +72,45 @@ class CurvePainter {
     CurvePainter(const CurvePainter&) = delete;
     CurvePainter& operator=(const CurvePainter&) = delete;
 
-    // Draws the part of the curve of one command that lies in `part`. Its pixels do not depend on the part. The
-    // vertices of the list are in `vertex_buffer`. The target stays bound; all other state may change.
-    void draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target,
-              const PixelArea& part);
+    // Begins a frame. Then every curve to be drawn is added, with the part of the picture in which it is drawn; its
+    // pixels do not depend on the part.
+    void begin();
+    void add(const ImDrawList& list, const ImDrawCmd& command, const Target& target, const PixelArea& part);
+    // Draws the curves one after the other in the order in which they were added. The target stays bound; all other
+    // state may change. Needs blending and the scissor test enabled.
+    void draw_next(const Target& target);
+
+    // A vertex: the ends of an edge, or the origin and size of an area, pixels.
+    struct Four {
+        float a, b, c, d;
+    };
 
  private:
+    struct PreparedCurve {
+        PixelArea region, part;  // of the picture: all pixels of the curve, and those to be drawn
+        int fineness = 1;
+        double width = 0.0;
+        unsigned color = 0;
+        std::size_t first_edge = 0, edges = 0, first_area = 0, areas = 0;  // quadrilaterals in vertices_
+        int x = 0, y = 0;                                                  // place of `part` in the mask
+    };
+    void load();
+    void place_masks(std::size_t first, int& width, int& height);
     void reserve_mask(int width, int height);
-    void draw_mask(const PixelArea& region, const PixelArea& part, int fineness, double width, std::size_t first,
-                   std::size_t points, GLuint vertex_buffer);
-    void composite(const PixelArea& region, const PixelArea& part, int fineness, unsigned color, const Target& target);
+    void draw_masks(std::size_t first);
+    void draw_mask(const PreparedCurve& curve);
+    void composite(const PreparedCurve& curve, const Target& target);
 
     const Gl& gl_;
     int fineness_;
-    GLuint edges_ = 0, overlay_ = 0, vertices_ = 0;
+    GLuint edges_ = 0, overlay_ = 0, vertex_array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0;
     GLuint mask_ = 0, mask_framebuffer_ = 0;
     int mask_width_ = 0, mask_height_ = 0;
+    std::vector<PreparedCurve> curves_;
+    std::vector<Four> vertices_;
+    std::size_t next_ = 0, masked_ = 0;  // the curve to be drawn next; those before `masked_` have had a mask
+    std::size_t indexed_ = 0;            // quadrilaterals for which there are indices
+    bool is_loaded_ = false;
 };
 
 // ---- rasters of cells: stored like curves, in the list's vertex buffer behind a callback ----

@@ -111,8 +111,38 @@ void Canvas::draw_over(const ImDrawData& data, float red, float green, float blu
         gl_.Clear(GL_COLOR_BUFFER_BIT);
         drawn_pixels_ += long{part.width} * part.height;
     }
-    for (int i = 0; i < data.CmdListsCount; ++i)
-        draw_list(*data.CmdLists[i], last_.lists()[static_cast<std::size_t>(i)], parts);
+    draw_parts(data, parts);
+}
+
+// Draws each command in the parts that it can change.
+void Canvas::draw_parts(const ImDrawData& data, const std::vector<PixelArea>& parts) {
+    struct DrawnPart {
+        const ImDrawList* list;
+        const ImDrawCmd* command;
+        const PixelArea* part;
+    };
+    std::vector<DrawnPart> all;
+    for (std::size_t i = 0; i < last_.lists().size(); ++i) {
+        const ImDrawList* const list = data.CmdLists[i];
+        for (int k = 0; k < list->CmdBuffer.Size; ++k)
+            for (const PixelArea& part : parts) {
+                const PixelArea both = common(last_.lists()[i].commands[static_cast<std::size_t>(k)].area, part);
+                if (both.width > 0 && both.height > 0) all.push_back({list, &list->CmdBuffer[k], &part});
+            }
+    }
+    curves_.begin();
+    for (const DrawnPart& one : all)
+        if (is_curve(*one.command)) curves_.add(*one.list, *one.command, target_, *one.part);
+    const ImDrawList* uploaded = nullptr;
+    for (const DrawnPart& one : all) {
+        if (std::exchange(uploaded, one.list) != one.list) upload(*one.list);
+        draw_command(*one.list, *one.command, *one.part);
+    }
+}
+
+void Canvas::upload(const ImDrawList& list) {
+    gl_.BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data, GL_STREAM_DRAW);
 }
 
 void Canvas::set_state() {
@@ -143,29 +173,10 @@ void Canvas::read_vertices_from(unsigned vertex) {
     gl_.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, offset(start + offsetof(ImDrawVert, col)));
 }
 
-void Canvas::draw_list(const ImDrawList& list, const DrawnFrame::DrawnList& drawn,
-                       const std::vector<PixelArea>& parts) {
-    const auto is_in = [](const PixelArea& area, const PixelArea& part) {
-        const PixelArea both = common(area, part);
-        return both.width > 0 && both.height > 0;
-    };
-    bool is_uploaded = false;
-    for (int i = 0; i < list.CmdBuffer.Size; ++i)
-        for (const PixelArea& part : parts) {
-            if (!is_in(drawn.commands[static_cast<std::size_t>(i)].area, part)) continue;
-            if (!std::exchange(is_uploaded, true)) {
-                gl_.BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
-                gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data,
-                               GL_STREAM_DRAW);
-            }
-            draw_command(list, list.CmdBuffer[i], part);
-        }
-}
-
 // Draws what lies in `part`, which does not change its pixels.
 void Canvas::draw_command(const ImDrawList& list, const ImDrawCmd& command, const PixelArea& part) {
     if (is_curve(command)) {
-        curves_.draw(list, command, vertex_buffer_, target_, part);
+        curves_.draw_next(target_);
         return set_state();
     }
     if (are_tiles(command)) {

@@ -43,7 +43,8 @@ class Canvas {
  private:
     void draw_over(const ImDrawData& data, float red, float green, float blue, float alpha);
     void resize(int width, int height);
-    void draw_list(const ImDrawList& list, const DrawnFrame::DrawnList& drawn, const std::vector<PixelArea>& parts);
+    void draw_parts(const ImDrawData& data, const std::vector<PixelArea>& parts);
+    void upload(const ImDrawList& list);
     void draw_command(const ImDrawList& list, const ImDrawCmd& command, const PixelArea& part);
     void set_state();
     void read_vertices_from(unsigned vertex);

@@ -40,7 +40,6 @@ constexpr int largest_texture = 16384;
     X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
     X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
     X(PFNGLDISABLEPROC, Disable)                                 \
-    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)         \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
     X(PFNGLENABLEPROC, Enable)                                   \
@@ -65,7 +64,6 @@ constexpr int largest_texture = 16384;
     X(PFNGLUNIFORM2FPROC, Uniform2f)                             \
     X(PFNGLUNIFORM4FPROC, Uniform4f)                             \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
-    X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)         \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
     X(PFNGLVIEWPORTPROC, Viewport)
 

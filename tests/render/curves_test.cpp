@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/support.hpp"
@@ -38,6 +39,28 @@ TEST(Curves, ASharpCornerHasNoSpikeAndNoHole) {
     const Image image = curve(surface, {{100, 300}, {103, 100}, {106, 300}}, {full, 2.0, {}});
     EXPECT_GT(support::darkness(image, 102, 101) + support::darkness(image, 103, 101), 200);
     for (int x = 0; x < image.width; ++x) ASSERT_EQ(support::darkness(image, x, 97), 0) << x;
+}
+
+// Of a curve only the parts of the picture near it are drawn, and none may be missing.
+TEST(Curves, AWideLineHasNoHoles) {
+    Offscreen surface(support::options());
+    for (const double width : {1.6, 40.0})
+        for (const Point end : {Point{530.0, 61.0}, {520.5, 330.3}, {61.7, 340.0}}) {
+            const Point start{60.2, 60.4};
+            const Image image = curve(surface, {start, end}, {full, width, {}});
+            const double x = end.x - start.x, y = end.y - start.y, square = x * x + y * y;
+            for (int row = 0; row < image.height; ++row)
+                for (int column = 0; column < image.width; ++column) {
+                    const double across = column + 0.5 - start.x, down = row + 0.5 - start.y;
+                    const double s = std::clamp((across * x + down * y) / square, 0.0, 1.0);
+                    const double off = std::hypot(across - s * x, down - s * y);
+                    const int dark = support::darkness(image, column, row);
+                    const bool is_inside = off<width / 2.0 - 0.51, is_outside = off> width / 2.0 + 0.51;
+                    const int least = is_inside ? 255 : off < 0.1 ? 201 : 0, most = is_outside ? 0 : 255;
+                    ASSERT_GE(dark, least) << column << " " << row;
+                    ASSERT_LE(dark, most) << column << " " << row;
+                }
+        }
 }
 
 TEST(Curves, AnOverlapIsNotDarker) {
