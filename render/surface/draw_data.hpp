@@ -46,6 +46,7 @@ class Canvas {
     void draw_parts(const ImDrawData& data, const std::vector<PixelArea>& parts);
     void upload(const ImDrawList& list);
     void draw_command(const ImDrawList& list, const ImDrawCmd& command, const PixelArea& part);
+    void fill(const PixelArea& area, unsigned color);
     void set_state();
     void read_vertices_from(unsigned vertex);
 

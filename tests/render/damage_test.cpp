@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -185,6 +186,41 @@ TEST(Damage, APictureAfterAnotherIsThatOfAFreshSurface) {
                 ASSERT_EQ(support::picture(used, draw), support::picture(fresh, draw)) << seed << " " << changed;
             }
     }
+}
+
+// A large opaque rectangle is not drawn as triangles. It has the pixels whose centers are inside, and keeps its place
+// between what is drawn before and after it.
+TEST(Damage, ALargeRectangleHasThePixelsOfTriangles) {
+    Offscreen surface(support::options());
+    const double x_low = 10.3, x_high = 190.5, y_low = 20.5, y_high = 70.49;
+    const Image image = support::picture(surface, [&](ImDrawList* list) {
+        const auto rectangle = [list](double left, double top, double right, double bottom, ImU32 color) {
+            list->AddRectFilled({static_cast<float>(left), static_cast<float>(top)},
+                                {static_cast<float>(right), static_cast<float>(bottom)}, color);
+        };
+        rectangle(30.0, 30.0, 40.0, 40.0, IM_COL32(0, 200, 0, 255));  // below it
+        rectangle(x_low, y_low, x_high, y_high, red);
+        rectangle(100.0, 30.0, 110.0, 40.0, IM_COL32(0, 200, 0, 255));    // above it
+        rectangle(300.0, 100.0, 500.0, 200.0, IM_COL32(200, 0, 0, 128));  // translucent, so it is blended
+        list->PushClipRect({20, 220}, {60, 300}, true);
+        rectangle(0.0, 200.0, 400.0, 400.0, red);
+        list->PopClipRect();
+    });
+    const auto color = [&](int x, int y) {
+        const std::size_t at = 3 * (static_cast<std::size_t>(y) * 600 + static_cast<std::size_t>(x));
+        return std::array<int, 3>{image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
+    };
+    const std::array<int, 3> filled{200, 0, 0}, green{0, 200, 0}, white{255, 255, 255};
+    for (int y = 0; y < 100; ++y)
+        for (int x = 0; x < 220; ++x) {
+            const bool is_above = x >= 100 && x < 110 && y >= 30 && y < 40;
+            const bool is_inside = x + 0.5 >= x_low && x + 0.5 < x_high && y + 0.5 >= y_low && y + 0.5 < y_high;
+            ASSERT_EQ(color(x, y), is_above ? green : is_inside ? filled : white) << x << " " << y;
+        }
+    EXPECT_EQ(color(400, 150)[1], 127);
+    for (int y = 205; y < 400; y += 5)
+        for (int x = 5; x < 100; x += 5)
+            ASSERT_EQ(color(x, y), x >= 20 && x < 60 && y >= 220 && y < 300 ? filled : white) << x << " " << y;
 }
 
 // Another background, another size of the letters: everything is drawn.
