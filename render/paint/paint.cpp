@@ -296,6 +296,10 @@ Clip clip_of(const ImDrawList* list) {
 // The part of a polygon inside the clip rectangle, as one polygon. Its edges may run along the clip rectangle back and
 // forth.
 std::vector<Point> clipped(std::vector<Point> polygon, const Clip& clip) {
+    const auto is_inside = [&](const Point& p) {
+        return p.x >= clip.low.x && p.x <= clip.high.x && p.y >= clip.low.y && p.y <= clip.high.y;
+    };
+    if (std::all_of(polygon.begin(), polygon.end(), is_inside)) return polygon;
     for (int side = 0; side < 4; ++side) {
         const auto inside = [&](const Point& p) {
             return side == 0   ? p.x - clip.low.x
