@@ -147,7 +147,7 @@ class ExplorerWindow::Explorer {
         if (!tour_.runs()) stop_tour();
     }
 
-    // Performs a command. The current frame is drawn already, so its effect needs another one.
+    // Performs a command. The lists of the current frame do not show its effect: they are made again.
     void take(const Command& command) {
         window_.draw_again();
         const auto* replay = std::get_if<command::Replay>(&command);

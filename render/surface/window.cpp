@@ -34,6 +34,8 @@ constexpr double sleep_seconds = 0.5;
 constexpr int settling_frames = 4, least_frames = 2;
 // Moving content is drawn this often, also by a display that does not set the pace.
 constexpr double moving_seconds = 1.0 / 60.0;
+// ImGui rejects a time step of zero, s.
+constexpr double least_step = 1e-4;
 
 // Set by another thread: the next frames must show its results.
 std::atomic<bool> was_woken = false;
@@ -151,6 +153,7 @@ struct Window::Implementation {
     int drawn = 0, calm = 0;          // frames since the last event; the last of them that drew nothing new
     bool only_moves = false;          // the last events are moves of the pointer
     bool must_show = true;            // the window system needs the picture again
+    bool is_outdated = false;         // the content has changed since it was drawn
     double last_frame = -1.0, pause = 0.0;
     std::array<int, 4> before_full_screen{};  // x, y, width, height
 };
@@ -289,17 +292,20 @@ void Window::Implementation::frame(const FrameFunction& draw) {
     glfwGetFramebufferSize(window, &width, &height);
     if (width < 1 || height < 1) return glfwWaitEventsTimeout(sleep_seconds);  // minimized
     const double now = glfwGetTime();
-    // ImGui rejects a time step of zero. After a sleep nothing must jump.
-    const double step = last_frame < 0.0 ? 1.0 / 60.0 : std::clamp(now - last_frame, 1e-4, 0.1);
+    // After a sleep nothing must jump.
+    const double step = last_frame < 0.0 ? 1.0 / 60.0 : std::clamp(now - last_frame, least_step, 0.1);
     last_frame = now;
     unsettled = std::max(unsettled - 1, 0);
     const Interface::Active active(interface);
     if (stale) restyle();
     apply(events.next(ImGui::GetIO().WantTextInput));
-    const ImDrawData& data = interface.frame(draw, width, height, step);
+    is_outdated = false;
+    const ImDrawData* data = &interface.frame(draw, width, height, step);
+    // Once: the second call may change the content, too, and its frame must not wait for ever.
+    if (is_outdated) data = &interface.frame(draw, width, height, least_step);
     show_cursor();
     const CurrentWindowContext current(window);
-    canvas->draw(data, interface.background());
+    canvas->draw(*data, interface.background());
     settle_early();
     if (!std::exchange(must_show, false) && !canvas->has_changed()) return;
     canvas->show();
@@ -329,6 +335,7 @@ void Window::keep_drawing(bool moving, double pause) {
 }
 
 void Window::draw_again() {
+    implementation_->is_outdated = true;
     implementation_->unsettle();
     implementation_->only_moves = false;
 }

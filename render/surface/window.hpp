@@ -26,7 +26,8 @@ class Window {
     // `moving` false: nothing changes by itself, so the window sleeps after a few frames until user input, or for at
     // most `pause` seconds if that is positive. Initially true.
     void keep_drawing(bool moving, double pause = 0.0);
-    // Requests some more frames, for a draw function that changes its content after drawing it.
+    // Called by a draw function that has changed its content after drawing it: what it drew is not shown, it is called
+    // again at once, and some more frames follow.
     void draw_again();
     // Wakes a sleeping window, which then draws some frames. The only member function that other threads may call.
     static void wake();
