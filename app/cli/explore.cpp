@@ -109,9 +109,9 @@ class ExplorerWindow::Explorer {
         const bool is_next = !dropped_.empty() && !is_asking();
         window_.keep_drawing(session_.is_moving() || tour_.runs() || is_typing(state_) || waits_for_click(state_) ||
                                  waits_for_tooltip(state_) || is_next,
-                             session_.under_way() != nullptr || session_.proof_under_way() != nullptr ||
-                                     session_.sweep_job().is_busy() || derives_equations(state_) || film_.is_busy() ||
-                                     state_.thumbnails->is_busy()
+                             session_.under_way() != nullptr || session_.has_coarse_curves() ||
+                                     session_.proof_under_way() != nullptr || session_.sweep_job().is_busy() ||
+                                     derives_equations(state_) || film_.is_busy() || state_.thumbnails->is_busy()
                                  ? progress_seconds
                                  : 0.0);
     }

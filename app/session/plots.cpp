@@ -230,7 +230,8 @@ void Plots::perform(const command::Link& command) {
 }
 
 std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
-                                  std::optional<double> horizon, const std::optional<Resolution>& page) const {
+                                  std::optional<double> horizon, const std::optional<Resolution>& page,
+                                  bool is_coarse) const {
     std::vector<Panel> panels;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
@@ -241,6 +242,7 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
         // On a large screen the grid is about as wide as a page; each plot gets its part of it.
         framing.size.width /= std::sqrt(columns_);
         framing.size.height /= std::sqrt(rows_);
+        framing.is_coarse = is_coarse;
         if (page) framing.size = *page;
         panels.push_back(achilles::compose(trajectory, samples, *plot.prepared, theme, framing, horizon));
         if (!page) panels.back().title.clear();

@@ -50,9 +50,10 @@ class Plots {
     // Builds the panels of one run from `samples`, which are plot_samples() of the whole run. On the screen, titles and
     // legends are widgets beside the panels. In print, `page` is the picture size: titles and legends are in the
     // panels, and curves are sampled for that size. Curves are pale after `horizon`, where the estimated error is too
-    // large.
+    // large. Coarse curves go straight through some samples.
     std::vector<Panel> compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
-                               std::optional<double> horizon = {}, const std::optional<Resolution>& page = {}) const;
+                               std::optional<double> horizon = {}, const std::optional<Resolution>& page = {},
+                               bool is_coarse = false) const;
     int revision() const { return revision_; }
     const std::shared_ptr<const Model>& model() const { return model_; }
     // True if both show the same, regardless of their histories.

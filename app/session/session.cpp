@@ -27,10 +27,18 @@ Session::OpenSystem::OpenSystem(const std::string& name_as_opened, const SystemD
       mechanism(*model),
       file_run(model->default_run()) {}
 
+namespace {
+
+// The curves of a run of more steps take longer than a frame.
+constexpr std::size_t most_exact_at_once = 1000;
+
+}  // namespace
+
 Session::FinishedRun::FinishedRun(std::shared_ptr<const OpenSystem> of, Trajectory made, const Plots& plotted,
-                                  const Theme& theme)
+                                  const Theme& theme, bool is_coarse_first)
     : trajectory(std::move(made)),
       system(std::move(of)),
+      is_coarse(is_coarse_first && trajectory.pieces.size() > most_exact_at_once),
       sampler(trajectory),
       samples(plot_samples(trajectory)),
       scale(scale_of(trajectory)),
@@ -38,10 +46,11 @@ Session::FinishedRun::FinishedRun(std::shared_ptr<const OpenSystem> of, Trajecto
       remarks(achilles::remarks(trajectory)),
       sentences(trajectory, nullptr, EventDescriptions::Angles::degrees),
       quantity(default_quantity(trajectory)),
-      mechanism_scene(std::make_unique<MechanismScene>(system->mechanism, trajectory, samples)),
+      mechanism_scene(std::make_unique<MechanismScene>(system->mechanism, trajectory, samples, is_coarse)),
       revision(plotted.revision()),
       dark(theme.dark),
-      plots(plotted.compose(trajectory, samples, theme)) {}
+      has_coarse_plots(is_coarse),
+      plots(plotted.compose(trajectory, samples, theme, {}, {}, is_coarse)) {}
 
 Session::FinishedRun::~FinishedRun() = default;
 
@@ -73,6 +82,10 @@ bool Session::apply(const Command& command) {
         receive_pins(patience_);
         receive(patience_);
     }
+    // What leaves the window has exact curves.
+    const bool is_output =
+        std::holds_alternative<command::Export>(command) || std::holds_alternative<command::Copy>(command);
+    if (!patience_ || is_output) follow_curves({});
     const UndoState before = undo_state();
     const std::string noticed = std::exchange(notice_, {});
     const std::string failed = std::exchange(error_, {});
@@ -340,16 +353,18 @@ void Session::rerun(const Run& run) {
     if (library_.budget) library_.budget->check(run.options);
     put_aside_pin();
     stop_proof_behind();
+    stop_followers();
     requested_run_ = run;
     const auto watch = std::make_shared<RunMonitor>();
     watch_ = watch;
     began_ = std::chrono::steady_clock::now();
-    worker_->start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
+    worker_->start([system = system_, run, plots = plots_, theme = theme_, watch,
+                    is_coarse_first = patience_.has_value()](const std::stop_token& stop) {
         watch->stop = stop;
         Trajectory trajectory = simulate(system->model, run, watch.get());
         // Do not build plots of a long run that was stopped: the next run, or a closing window, would wait for them.
         if (stop.stop_requested()) return std::shared_ptr<FinishedRun>();
-        return std::make_shared<FinishedRun>(system, std::move(trajectory), plots, theme);
+        return std::make_shared<FinishedRun>(system, std::move(trajectory), plots, theme, is_coarse_first);
     });
     receive(patience_);
     if (library_.budget && watch_ == nullptr) library_.budget->charge(trajectory());
@@ -360,16 +375,67 @@ double Session::seconds_under_way() const {
 }
 
 // Starts the error estimate of the newest run on a second thread, so that the next run does not wait. During a drag
-// each run cancels the estimate of the one before it. At rest the estimate always finishes, so no picture depends on
+// each value cancels the estimate of the run before it. At rest the estimate always finishes, so no picture depends on
 // timing.
-void Session::estimate() {
+void Session::estimate(Timeout patience) {
+    simulated_->is_estimated = true;
     estimator_->start(
         [run = simulated_](const std::stop_token& stop) { return estimate_error(run->trajectory, stop); });
-    receive_estimate(patience_);
+    receive_estimate(patience);
+}
+
+// Replaces coarse curves by exact ones. They, and the error estimate of such a run, begin when the coarse ones are on
+// the screen, so that they do not delay them. Plots that were composed meanwhile, for a command, are exact already, and
+// so is the trail of a scene that was turned.
+void Session::follow_curves(Timeout patience) {
+    if (!has_coarse_curves() || (patience && watch_ != nullptr)) {
+        curves_worker_->take(0.0);  // what a stopped job has left
+        return;
+    }
+    if (patience && !is_on_screen()) return;
+    if (run_made_exact_ != simulated_) {
+        run_made_exact_ = simulated_;
+        curves_worker_->start([run = simulated_, limits = limits(), plots = plots_,
+                               theme = theme_](const std::stop_token& stop) -> std::shared_ptr<ExactCurves> {
+            auto curves = std::make_shared<ExactCurves>();
+            curves->trail = trail_of(run->system->mechanism, run->trajectory, run->samples, limits);
+            if (stop.stop_requested()) return nullptr;
+            curves->plots = plots.compose(run->trajectory, run->samples, theme);
+            return curves;
+        });
+        if (!simulated_->is_estimated) estimate(0.0);
+    }
+    try {
+        const auto made = curves_worker_->take(patience);
+        if (!made || *made == nullptr) return;
+        if (simulated_->turned == nullptr) simulated_->mechanism_scene->refine(std::move((*made)->trail));
+        if (std::exchange(simulated_->has_coarse_plots, false)) simulated_->plots = std::move((*made)->plots);
+    } catch (const std::bad_alloc&) {
+        error_ = "there is not enough memory for the exact curves of this run; coarse curves are shown";
+    }
+    run_made_exact_.reset();
+    simulated_->is_coarse = false;
+    compose_pinned();
+}
+
+// Whether a window has shown the newest run since it came. What only follows it would delay that picture.
+bool Session::is_on_screen() const {
+    constexpr int updates_of_a_frame = 2;  // a window makes the lists of a frame again after a command
+    return simulated_->updates >= updates_of_a_frame;
+}
+
+// Another run is about to start: it should not wait for what follows this one.
+void Session::stop_followers() {
+    if (run_made_exact_ != nullptr)
+        curves_worker_->start([](const std::stop_token&) { return std::shared_ptr<ExactCurves>(); });
+    run_made_exact_.reset();
+    if (simulated_ == nullptr || !simulated_->is_estimated || simulated_->estimate) return;
+    simulated_->is_estimated = false;
+    estimator_->start([](const std::stop_token&) { return ErrorEstimate(); });
 }
 
 void Session::receive_estimate(Timeout patience) {
-    if (simulated_->estimate || shows_start()) return;
+    if (simulated_->estimate || !simulated_->is_estimated || shows_start()) return;
     try {
         simulated_->estimate = estimator_->take(patience);
     } catch (const std::bad_alloc&) {
@@ -401,6 +467,7 @@ void Session::receive(Timeout patience) {
         watch_.reset();
         requested_run_ = simulated_->trajectory.run;
         error_ = problem;
+        if (!has_coarse_curves() && !simulated_->is_estimated) estimate(0.0);
     };
     try {
         motion = worker_->take(patience);
@@ -417,7 +484,7 @@ void Session::receive(Timeout patience) {
     simulated_ = *motion;
     follow_direction();
     watch_.reset();
-    estimate();
+    if (!has_coarse_curves()) estimate(patience_);
     try {
         if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), pin_requests_, simulated_);
     } catch (const InputError& problem) {
@@ -462,6 +529,7 @@ void Session::compose_plots() {
     simulated_->revision = plots_.revision();
     simulated_->dark = theme_.dark;
     simulated_->plots = plots_.compose(simulated_->trajectory, simulated_->samples, theme_, horizon());
+    simulated_->has_coarse_plots = false;
     compose_pinned();
 }
 

@@ -62,8 +62,10 @@ struct SystemSource {
 
 // Runs are computed on another thread. By default a command waits for its run as long as it takes, so that the same
 // commands always lead to the same session. With a timeout the last result stays visible until update() receives the
-// new one, and a newer run cancels an older one. Commands that set the playback position while a run is under way are
-// repeated when it is finished, so that they mean the same as in a replayed journal.
+// new one, and a newer run cancels an older one; a long run is shown first with coarse curves, which exact ones replace
+// after a frame. Its events, certificates and numbers are exact from the beginning. Commands that set the playback
+// position while a run is under way are repeated when it is finished, so that they mean the same as in a replayed
+// journal.
 class Session {
  public:
     // Opens `first` under the name `name` with the given run. Throws InputError if it cannot be derived or cannot
@@ -90,6 +92,8 @@ class Session {
     void on_ready(const std::function<void()>& ready);
     // Receives the results that are ready.
     void update() {
+        ++simulated_->updates;  // first, so that a run that comes now is on the screen before what follows it begins
+        follow_curves(0.0);
         receive_pins(0.0);
         receive(0.0);
         receive_proof(0.0);
@@ -103,6 +107,8 @@ class Session {
     void settle();
     // Progress of the run requested last; null if it is the one that is shown.
     const RunMonitor* under_way() const { return watch_.get(); }
+    // True while the curves of the run that is shown are coarse.
+    bool has_coarse_curves() const { return simulated_->is_coarse; }
     // True while the first run of a system is not finished: only its start is shown.
     bool shows_start() const { return trajectory().outcome.kind == Outcome::Kind::cancelled; }
     // Elapsed wall time of the run under way, s.
@@ -241,7 +247,8 @@ class Session {
     };
     // One run and everything derived from it for display.
     struct FinishedRun {
-        FinishedRun(std::shared_ptr<const OpenSystem> of, Trajectory made, const Plots& plotted, const Theme& theme);
+        FinishedRun(std::shared_ptr<const OpenSystem> of, Trajectory made, const Plots& plotted, const Theme& theme,
+                    bool is_coarse_first = false);
         ~FinishedRun();
         FinishedRun(const FinishedRun&) = delete;  // `mechanism_scene` refers to other members
         FinishedRun& operator=(const FinishedRun&) = delete;
@@ -250,6 +257,7 @@ class Session {
         const Mechanism& mechanism() const { return turned ? *turned : system->mechanism; }
         Trajectory trajectory;
         std::shared_ptr<const OpenSystem> system;
+        bool is_coarse;  // the trail, and the plots as long as they have not been composed anew
         Sampler sampler;
         std::vector<Sample> samples;
         State scale;
@@ -263,7 +271,15 @@ class Session {
         std::unique_ptr<MechanismScene> mechanism_scene;
         int revision = 0;   // revision of the plots shown in `plots`
         bool dark = false;  // theme of `plots`
+        bool has_coarse_plots;
         std::vector<Panel> plots;
+        int updates = 0;            // of the session since its arrival
+        bool is_estimated = false;  // its error estimate has begun
+    };
+    // The exact curves of a run that was shown with coarse ones.
+    struct ExactCurves {
+        std::vector<Panel> plots;
+        Trail trail;
     };
 
     void perform(const command::Open& command);
@@ -356,7 +372,10 @@ class Session {
     void change_system(const std::shared_ptr<const OpenSystem>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
     void receive(Timeout patience);
-    void estimate();
+    void follow_curves(Timeout patience);
+    bool is_on_screen() const;
+    void stop_followers();
+    void estimate(Timeout patience);
     void receive_estimate(Timeout patience);
     void use_horizon();
     void compose_plots();
@@ -422,6 +441,9 @@ class Session {
     std::shared_ptr<OrbitJob> orbit_job_;
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
+    std::shared_ptr<const FinishedRun> run_made_exact_;  // the run of the job below; null: none
+    std::unique_ptr<Worker<std::shared_ptr<ExactCurves>>> curves_worker_ =
+        std::make_unique<Worker<std::shared_ptr<ExactCurves>>>();
     std::unique_ptr<Worker<ErrorEstimate>> estimator_ = std::make_unique<Worker<ErrorEstimate>>();
 };
 

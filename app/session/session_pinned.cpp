@@ -124,6 +124,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     ready_ = ready;
     worker_->on_ready(ready);
     estimator_->on_ready(ready);
+    curves_worker_->on_ready(ready);
     sweep_job_->on_ready(ready);
     proof_job_->on_ready(ready);
     proof_behind_job_->on_ready(ready);

@@ -94,6 +94,7 @@ void Session::follow_sweep() {
 void Session::settle() {
     receive_pins({});
     receive({});
+    follow_curves({});
     receive_proof({});
     receive_estimate({});
     follow_proof_behind({});

@@ -150,7 +150,7 @@ Vector contact_force(const Trajectory& trajectory, const Sample& sample) {
 }
 
 std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double to, const Drawing& seen,
-                             const PlaceOf& place) {
+                             const PlaceOf& place, std::span<const Sample> through) {
     Panel world;
     world.x.low = seen.x_low, world.x.high = seen.x_high;
     world.y.low = seen.y_low, world.y.high = seen.y_high;
@@ -161,6 +161,7 @@ std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double t
     const double shape = (seen.y_high - seen.y_low) / (seen.x_high - seen.x_low);
     (shape < 1.0 ? request.size.height : request.size.width) = request.size.width * (shape < 1.0 ? shape : 1.0 / shape);
     if (shape >= 1.0) request.size.height = Resolution{}.width;
+    request.through = through;
     const PanelMap map(world,
                        {0.0F, 0.0F, static_cast<float>(request.size.width), static_cast<float>(request.size.height)});
     request.map = &map;
@@ -189,12 +190,14 @@ void add_present(std::vector<WayPoint>& way, const WayPoint& now) {
 }
 
 Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples,
-               const Drawing& limits) {
+               const Drawing& limits, bool is_coarse) {
     Trail trail;
     auto grip = mechanism.grip(trajectory.run.parameters);
     if (!grip) return trail;
-    trail.way = way_of(trajectory, trajectory.run.options.start_time, trajectory.end_time, limits,
-                       [&](const Sample& sample) { return grip->at(sample.t, sample.state).at; });
+    trail.way = way_of(
+        trajectory, trajectory.run.options.start_time, trajectory.end_time, limits,
+        [&](const Sample& sample) { return grip->at(sample.t, sample.state).at; },
+        is_coarse ? samples : std::span<const Sample>());
     const std::size_t stride = 1 + samples.size() / 300;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double t = samples[i].t;

@@ -60,10 +60,10 @@ struct WayPoint {
 };
 // Position of a sample in a plane.
 using PlaceOf = std::function<Point(const Sample&)>;
-// Trail of a place during [from, to] (s), as fine as the picture `seen` needs (trace.hpp). The phases of each look come
-// together, in order of time.
+// Trail of a place during [from, to] (s), as fine as the picture `seen` needs (trace.hpp), or straight `through` some
+// of these samples. The phases of each look come together, in order of time.
 std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double to, const Drawing& seen,
-                             const PlaceOf& place);
+                             const PlaceOf& place, std::span<const Sample> through = {});
 
 // The body point along a whole run.
 struct Trail {
@@ -76,9 +76,9 @@ struct Trail {
     };
     std::vector<Arrows> arrows;
 };
-// `limits`: the part of the world that the run needs.
+// `limits`: the part of the world that the run needs. A coarse trail goes straight through some samples.
 Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples,
-               const Drawing& limits);
+               const Drawing& limits, bool is_coarse = false);
 
 // Inserts the present point into the trail of its phase, in order of time.
 void add_present(std::vector<WayPoint>& way, const WayPoint& now);

@@ -338,6 +338,7 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
     request.noise.assign(curves + 1, noise.y);
     request.noise[0] = noise.x;
     request.size = framing.size;
+    if (framing.is_coarse && extent.close.empty()) request.through = extent.samples;
     const PanelMap map(panel,
                        {0.0F, 0.0F, static_cast<float>(framing.size.width), static_cast<float>(framing.size.height)});
     request.map = &map;

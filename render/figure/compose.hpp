@@ -71,7 +71,8 @@ struct Framing {
     bool for_print = false;
     // Plot the distance between this run and other runs over time (difference.hpp).
     bool difference = false;
-    Resolution size{};  // approximate size of the plot area
+    Resolution size{};       // approximate size of the plot area
+    bool is_coarse = false;  // curves go straight through some samples of the run, except in a part of it
     friend bool operator==(const Framing&, const Framing&) = default;
 };
 

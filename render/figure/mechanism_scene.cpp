@@ -54,12 +54,12 @@ void thin_out_large(std::vector<DrawnShape>& shapes, const Drawing& seen) {
 }  // namespace
 
 MechanismScene::MechanismScene(const Mechanism& mechanism, const Trajectory& trajectory,
-                               std::span<const Sample> samples)
+                               std::span<const Sample> samples, bool has_coarse_trail)
     : mechanism_(mechanism),
       trajectory_(trajectory),
       sampler_(trajectory),
       limits_(mechanism.limits(trajectory, samples)),
-      trail_(trail_of(mechanism, trajectory, samples, limits_)),
+      trail_(trail_of(mechanism, trajectory, samples, limits_, has_coarse_trail)),
       touch_(mechanism, trajectory, limits_.size),
       camera_(mechanism, touch_, trajectory, samples, trail_, limits_),
       unit_(length_unit(trajectory.model->description())) {

@@ -35,14 +35,17 @@ PhaseLabel phase_label(const Model& model, const Sample& now);
 
 class MechanismScene {
  public:
-    // Keeps references to its arguments.
-    MechanismScene(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
+    // Keeps references to its arguments. A coarse trail goes straight through some samples.
+    MechanismScene(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples,
+                   bool has_coarse_trail = false);
     MechanismScene(const MechanismScene&) = delete;
     MechanismScene& operator=(const MechanismScene&) = delete;
 
     // The part of the world that the run needs (Mechanism::limits).
     const Drawing& limits() const { return limits_; }
     const Trail& trail() const { return trail_; }
+    // Replaces a coarse trail by the exact one.
+    void refine(Trail trail) { trail_ = std::move(trail); }
     const Camera& camera() const { return camera_; }
     const ContactGeometry& touch() const { return touch_; }
     const std::string& unit() const { return unit_; }  // of length

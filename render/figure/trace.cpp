@@ -254,6 +254,30 @@ class Tracer {
             tolerances_.push_back(request.over_time ? off(i + 1) : std::max(off(0), off(i + 1)));
     }
     Trace run() {
+        if (request_.through.empty())
+            walk();
+        else
+            go_through(request_.through);
+        for (const auto& thinner : thinners_) result_.courses.push_back(thinner->take());
+        return std::move(result_);
+    }
+
+ private:
+    static constexpr int max_halvings = 24;
+    static constexpr int max_of_step = 200000;  // maximum number of samples in one step
+
+    // Straight through some of the samples, about as many as a plot has columns of pixels.
+    void go_through(std::span<const Sample> samples) {
+        constexpr std::size_t most = 1000;
+        const std::size_t stride = 1 + samples.size() / most, last = samples.size() - 1;
+        for (std::size_t i = 0; i <= last; i = i < last ? std::min(i + stride, last) : i + 1) {
+            if (samples[i].t < request_.from || samples[i].t > request_.to) continue;
+            read_node(samples[i], next_);
+            if (is_torn(samples[i].j)) tear();
+            take(next_);
+        }
+    }
+    void walk() {
         sampler_.walk(request_.from, request_.to, request_.with_work,
                       [&](const Sample& sample, const DenseSegment* piece) {
                           read_node(sample, next_);
@@ -265,14 +289,7 @@ class Tracer {
                           std::swap(last_, next_);
                           has_last_ = true;
                       });
-        for (const auto& thinner : thinners_) result_.courses.push_back(thinner->take());
-        return std::move(result_);
     }
-
- private:
-    static constexpr int max_halvings = 24;
-    static constexpr int max_of_step = 200000;  // maximum number of samples in one step
-
     // Whether the position has jumped since the last sample, which was before event `last_event_`.
     bool is_torn(int j) {
         const int from = std::exchange(last_event_, j);

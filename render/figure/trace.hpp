@@ -36,6 +36,8 @@ struct TraceRequest {
     std::vector<double> noise{};     // rounding error of each quantity, x first; empty: 0
     Resolution size{};               // of the plot area that `map` fills, its upper left corner at (0, 0)
     const PanelMap* map = nullptr;
+    // Coarse curves go straight through some of these samples. Empty: the motion between steps is traced.
+    std::span<const Sample> through{};
 };
 
 struct Trace {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "app/hands.hpp"
 #include "output/output.hpp"
@@ -92,6 +95,89 @@ TEST(LiveSession, ShowsTheLastRunUntilTheNextIsThereAndEndsAsAPatientOne) {
     EXPECT_TRUE(live.horizon()) << "choose a longer run";
     EXPECT_TRUE(to_text(live) == to_text(patient));
     EXPECT_EQ(live.time(), 876.5);
+}
+
+// All points of all plots, and of the trail; of a break the sign of its NaN does not count.
+std::vector<Point> curve_points(const Session& session) {
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < session.plots().size(); ++i)
+        for (const Curve& curve : session.drawn(i).curves)
+            points.insert(points.end(), curve.points.begin(), curve.points.end());
+    for (const WayPoint& point : session.trail().way) points.push_back(point.at);
+    for (Point& point : points)
+        if (!std::isfinite(point.x)) point = {-1e9, -1e9};
+    return points;
+}
+
+bool have_same_curves(const Session& a, const Session& b) {
+    const std::vector<Point> of_a = curve_points(a), of_b = curve_points(b);
+    return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                      [](const Point& p, const Point& q) { return p.x == q.x && p.y == q.y; });
+}
+
+// Only the curves of a long run are coarse, and only at first.
+TEST(LiveSession, ALongRunHasCoarseCurvesFirst) {
+    Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
+    live.set_patience(20.0);
+    for (Session* session : {&patient, &live}) session->apply(command::SetEndTime{200.0});
+    EXPECT_FALSE(live.has_coarse_curves()) << "a short run is exact at once";
+    EXPECT_TRUE(have_same_curves(live, patient));
+    for (Session* session : {&patient, &live}) session->apply(command::SetEndTime{2000.0});
+    EXPECT_FALSE(patient.has_coarse_curves());
+    ASSERT_TRUE(live.has_coarse_curves());
+    EXPECT_TRUE(to_text(live.trajectory()) == to_text(patient.trajectory()));
+    EXPECT_LT(4 * curve_points(live).size(), curve_points(patient).size());
+    EXPECT_GT(curve_points(live).size(), 500u);
+    EXPECT_EQ(live.error_estimate(), nullptr) << "it would delay the coarse curves";
+    live.update();
+    EXPECT_TRUE(live.has_coarse_curves()) << "they are not on the screen before the next update";
+    for (int i = 0; i < 20000 && (live.has_coarse_curves() || live.error_estimate() == nullptr); ++i) {
+        live.update();
+        std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_TRUE(have_same_curves(live, patient));
+    EXPECT_NE(live.error_estimate(), nullptr);
+    EXPECT_TRUE(to_text(live) == to_text(patient));
+    for (std::size_t i = 0; i < live.plots().size(); ++i) EXPECT_EQ(live.plots()[i].y.high, patient.plots()[i].y.high);
+}
+
+TEST(LiveSession, WhatLeavesItHasNoCoarseCurves) {
+    Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
+    live.set_patience(20.0);
+    for (Session* session : {&patient, &live}) session->apply(command::SetEndTime{2000.0});
+    ASSERT_TRUE(live.has_coarse_curves());
+    for (Session* session : {&patient, &live}) session->apply(command::Copy{"plots"});
+    EXPECT_FALSE(live.has_coarse_curves());
+    EXPECT_TRUE(have_same_curves(live, patient));
+    for (Session* session : {&patient, &live}) session->apply(command::Set{"e", 0.45});
+    ASSERT_TRUE(live.has_coarse_curves());
+    patient.apply(command::Copy{"plots"});
+    live.set_patience(0.0);
+    live.apply(command::SetEndTime{20000.0});
+    live.apply(command::Copy{"plots"});
+    ASSERT_NE(live.under_way(), nullptr);
+    EXPECT_FALSE(live.has_coarse_curves()) << "nor while another run is under way";
+    EXPECT_TRUE(have_same_curves(live, patient));
+}
+
+// A zoom meanwhile is kept, and another value stops the exact curves of the last one.
+TEST(LiveSession, ACommandDuringCoarseCurvesCounts) {
+    Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
+    live.set_patience(20.0);
+    for (Session* session : {&patient, &live}) {
+        session->apply(command::SetEndTime{2000.0});
+        session->apply(command::Zoom{1, 100.0, 200.0, 10.0, 12.0});
+    }
+    ASSERT_TRUE(live.has_coarse_curves());
+    live.settle();
+    EXPECT_TRUE(have_same_curves(live, patient));
+    for (const double e : {0.4, 0.45}) {
+        for (Session* session : {&patient, &live}) session->apply(command::Set{"e", e});
+        for (int i = 0; i < 3; ++i) live.update();  // the exact curves have begun
+    }
+    live.settle();
+    EXPECT_FALSE(live.has_coarse_curves());
+    EXPECT_TRUE(have_same_curves(live, patient));
 }
 
 TEST(LiveSession, ANewerValueCancelsALongRun) {
