@@ -194,7 +194,7 @@ void Session::stop_proof_behind() {
     run_proved_behind_.reset();
 }
 
-// Starts the proof once the run and its estimate are finished. The next run stops it.
+// Starts the proof once the run and its estimate are finished and on the screen. The next run stops it.
 void Session::follow_proof_behind(Timeout patience) {
     constexpr int most_steps = 150;  // about 0.1 s for two coordinates
     if (!proves_behind_) return;
@@ -203,6 +203,7 @@ void Session::follow_proof_behind(Timeout patience) {
     if (!is_wanted) return stop_proof_behind();
     try {
         if (run_proved_behind_ != simulated_) {
+            if (patience && !is_on_screen()) return stop_proof_behind();
             Run run = trajectory().run;
             run.options.max_steps = std::min(run.options.max_steps, most_steps);
             run_proved_behind_ = simulated_;

@@ -180,6 +180,24 @@ TEST(LiveSession, ACommandDuringCoarseCurvesCounts) {
     EXPECT_TRUE(have_same_curves(live, patient));
 }
 
+// A proof behind a run would slow its picture down.
+TEST(LiveSession, ProvesWhatIsOnTheScreen) {
+    Session session = test::session("ball_on_sine");
+    session.prove_behind();
+    session.set_patience(20.0);
+    session.apply(command::Set{"e", 0.45});
+    ASSERT_NE(session.error_estimate(), nullptr);
+    session.update();
+    std::this_thread::sleep_for(500ms);  // long enough for a proof, if one had begun
+    session.update();
+    EXPECT_EQ(session.shown_proof(), nullptr);
+    for (int i = 0; i < 20000 && session.shown_proof() == nullptr; ++i) {
+        session.update();
+        std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_NE(session.shown_proof(), nullptr);
+}
+
 TEST(LiveSession, ANewerValueCancelsALongRun) {
     Session session = test::session("ball_on_sine");
     session.set_patience(0.02);
