@@ -16,6 +16,7 @@
 
 #include "app/open.hpp"
 #include "bench/measure.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "model/read_system.hpp"
 #include "surface/interface.hpp"
 #include "surface/window.hpp"
@@ -241,6 +242,63 @@ void window() {
     report("taking a finished run in", fed);
 }
 
+double process_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// A step of a slider in its parts. What is drawn by software is measured on all threads.
+void steps() {
+    for (const double end : {20.0, 200.0, 2000.0}) {
+        Session session = test::session("ball_on_sine");
+        session.apply(command::SetEndTime{end});
+        PanelState panels = test::panels();
+        panels.in_window = true;
+        Offscreen surface(test::surface(Desk::width, Desk::height));
+        const FrameFunction draw = [&] { explorer(session, panels); };
+        surface.frame(draw, 5);
+        const auto e = [](int i) { return 0.5 + 0.004 * i; };
+        std::vector<double> parts[8];
+        for (int i = 1; i <= 20; ++i) {
+            Run run = session.run();
+            run.parameters[2] = e(i);
+            double last = process_seconds();
+            const auto pass = [&](std::size_t part) {
+                const double now = process_seconds();
+                parts[part].push_back(1e3 * (now - last));
+                last = now;
+            };
+            const Trajectory trajectory = simulate(session.model(), run);
+            pass(0);
+            const std::vector<Sample> samples = plot_samples(trajectory);
+            pass(1);
+            const MechanismScene scene(session.mechanism(), trajectory, samples);
+            pass(2);
+            session.plotted().compose(trajectory, samples, session.theme());
+            pass(3);
+            estimate_error(trajectory);
+            pass(4);
+            session.apply(command::Set{"e", e(i)});
+            session.settle();
+            last = process_seconds();
+            surface.step(draw);
+            pass(5);
+            surface.step(draw);
+            pass(6);
+            surface.frame(draw, 1);
+            pass(7);
+        }
+        fmt::print("end {} s, processor time, ms:", end);
+        for (std::size_t part = 0; part < 8; ++part) {
+            constexpr const char* names[] = {"run",      "samples",     "scene",       "plots",
+                                             "estimate", "first lists", "lists again", "lists, pixels and reading"};
+            fmt::print(" {} {:.1f},", names[part], bench::median(parts[part]));
+        }
+        fmt::print("\n");
+    }
+}
+
 // A map from the change of a slider on, as the panel receives its parts.
 void sweep() {
     const std::pair<const char*, const char*> maps[] = {
@@ -277,6 +335,10 @@ int main(int count, char** words) {
     }
     if (count > 1 && std::string(words[1]) == "sweep") {
         achilles::sweep();
+        return 0;
+    }
+    if (count > 1 && std::string(words[1]) == "steps") {
+        achilles::steps();
         return 0;
     }
     if (count > 1 && std::string(words[1]) == "bars") {
