@@ -83,9 +83,9 @@ Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& r
     return panel;
 }
 
-// The enclosure of the event time, if the run is proved.
+// Whether the time in the title is proved.
 void show_proved(const Session& session, std::size_t event) {
-    if (session.enclosed(event) != nullptr) ImGui::TextUnformatted(proved_text(session, event).c_str());
+    if (session.enclosed(event) != nullptr) ImGui::TextUnformatted("The time is proved.");
 }
 
 }  // namespace
@@ -340,7 +340,7 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     const Event& event = session.trajectory().events[index];
     const Certificate& certificate = *event.certificate;
     const CertificateText text = certificate_text(session, index);
-    const std::string time = time_text(session.trajectory(), index, session.precision().of_event(index));
+    const std::string time = event_time(session, index).text();
     const std::string verdict = text.verdict.empty() ? "" : ", " + text.verdict;
     if (show_card_title(fmt::format("{}, time {} s{}", text.title, time, verdict), "", state))
         commands.emplace_back(command::Select{0});
@@ -351,8 +351,7 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                                      *horizon),
                          width, text_color());
     if (!text.sentence.empty()) paragraph(text.sentence, width, text_color());
-    const std::string proved = proved_text(session, index);
-    paragraph(proved.empty() ? text.not_covered : proved + ". " + text.not_covered, width, faint_color());
+    paragraph(text.not_covered, width, faint_color());
     if (!is_plastic_landing(event)) lens_button(session, state, commands);
     const bool can_prove = not_proved(*session.model()).empty() && session.shown_proof() == nullptr;
     if (can_prove && session.proof_under_way() == nullptr) {

@@ -135,9 +135,8 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     show_comparing(buttons, session, state, commands);
 }
 
-void time_cell(ImVec2 at, double t, double error, const Color& color) {
-    constexpr int decimals = 9;
-    decimal_cell(at, time_at, number_with_decimals(t, error, decimals), decimals, color);
+void time_cell(ImVec2 at, const Session& session, const std::string& digits, const Color& color) {
+    decimal_cell(at, time_at, digits, decimals_of_times(session.trajectory()), color);
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at, const EventColumns& columns) {
@@ -146,13 +145,11 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, const Eve
     const Markers markers = event_markers(session.theme(), event.kind);
     paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
     number_cell(at, number_at, std::to_string(index + 1), faint_color());
-    time_cell(at, event.t, session.precision().of_event(index), text_color());
+    time_cell(at, session, event_time(session, index).digits, text_color());
     // Beside a card, which has the details, only the name.
     const std::string name =
         has_card(session) ? event_name(session, event) : typeset_sentence(session.sentences().of(index));
-    const bool is_told = !has_card(session) && session.proof() != nullptr;  // not of a proof made by itself
-    const EnclosedEvent* const enclosed = is_told ? session.enclosed(index) : nullptr;
-    const std::string proved = enclosed == nullptr ? "" : "proved t = " + with_minus(short_text(enclosed->t)) + " s · ";
+    const std::string proved = has_card(session) || session.enclosed(index) == nullptr ? "" : "proved · ";
     columns.put_words(at, proved + name, text_color());
     // At a Zeno point the loss of its whole impact sequence, as in the sentence.
     const double lost = is_zeno_point(event) ? bounce_sequence_of(session.trajectory(), index).loss
@@ -177,14 +174,13 @@ void paint_impacts(const Session& session, const EventRows::EventRow& row, ImVec
                                       [](const Event& event) { return !event.is_impact(); });
     const double lost = events[row.event + row.count - 1].loss - (row.event > 0 ? events[row.event - 1].loss : 0.0);
     columns.put_words(at, fmt::format("{} {}", row.count, any_turn ? "events" : "impacts"), text_color());
-    time_cell(at, events[row.event].t, session.precision().of_event(row.event), faint_color());
+    time_cell(at, session, event_time(session, row.event).digits, faint_color());
     columns.row(session, nullptr, lost, at, faint_color());
 }
 
 void show_impacts(const Session& session, const EventRows::EventRow& row, int present, const EventColumns& columns,
                   PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const auto& events = session.trajectory().events;
     const std::size_t last = row.event + row.count - 1;
     const bool is_reached = !row.is_open && session.selected() == 0 && present >= static_cast<int>(row.event) &&
                             present <= static_cast<int>(last);
@@ -198,7 +194,7 @@ void show_impacts(const Session& session, const EventRows::EventRow& row, int pr
             commands.emplace_back(command::Select{0});
     }
     remember(state, "impacts " + std::to_string(row.event + 1));
-    const auto time = [&](std::size_t i) { return known_digits(events[i].t, session.precision().of_event(i), 9); };
+    const auto time = [&](std::size_t i) { return event_time(session, i).digits; };
     tooltip(fmt::format("events {} to {}, t = {} to {} s: click to {} them", row.event + 1, last + 1, time(row.event),
                         time(last), row.is_open ? "collapse" : "list"));
     paint_impacts(session, row, at, columns);
@@ -226,7 +222,7 @@ void show_end(const Session& session, bool is_start, const EventColumns& columns
     if (ImGui::Selectable("##row", is_present)) move_time(session, t, commands);
     remember(state, is_start ? "event start" : "event end");
     if (!is_start && session.shows_start()) return columns.put_words(at, "still under way", faint_color());
-    time_cell(at, t, 0.0, faint_color());
+    time_cell(at, session, number_with_decimals(t, 0.0, 9), faint_color());
     // The time is in its own column.
     std::string text = is_start ? session.sentences().start() : session.sentences().end();
     const std::size_t colon = text.find(": ");

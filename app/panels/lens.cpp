@@ -68,16 +68,17 @@ void show_row(const Session& session, const Lens& lens, float height, PanelState
     show_places(lens, width, state, commands);
 }
 
-// The certified interval in words.
-void show_interval(const Session& session, const Event& zeno, float width) {
+// The cut, and the bound of the Zeno time, in words.
+void show_interval(const Session& session, std::size_t index, float width) {
+    const Event& zeno = session.trajectory().events[index];
     if (zeno.truncation)
         paragraph(fmt::format("Cut {:.3g} s before \u03c4\u221e, after {} impacts.", zeno.t - zeno.truncation->t,
                               zeno.impacts),
                   width, text_color());
     if (!zeno.certificate || !zeno.certificate->certified || session.precision().is_beyond(zeno.t)) return;
-    const Certificate& c = *zeno.certificate;
-    paragraph(fmt::format("Certified from the computed state at the cut:\n\u03c4\u221e lies in {}, {:.2g} s wide.",
-                          interval_text(c.zeno_low, c.zeno_high), c.zeno_high - c.zeno_low),
+    const EventTime time = event_time(session, index);
+    paragraph(fmt::format("{}\n\u03c4\u221e = {} s.",
+                          time.is_proved ? "Proved:" : "Certified from the computed state at the cut:", time.text()),
               width, event_markers(session.theme(), Event::Kind::zeno).fill);
 }
 
@@ -99,7 +100,7 @@ void show_lens(const Session& session, PanelState& state, Commands& commands) {
     ImGui::BeginGroup();
     if (show_card_title("Zeno lens",
                         fmt::format("event {}, {} = {} s", index + 1, is_plastic_landing(zeno) ? "t" : "\u03c4\u221e",
-                                    number(zeno.t, session.precision().of_event(index), 10)),
+                                    event_time(session, index).text()),
                         state, 2.0F * edge))
         commands.emplace_back(command::Show{"lens", false});
     const auto lens = Lens::at(session.trajectory(), index);
@@ -114,7 +115,7 @@ void show_lens(const Session& session, PanelState& state, Commands& commands) {
         const float below = ImGui::GetFrameHeight() + 3.0F * ImGui::GetTextLineHeightWithSpacing() + 2.0F * edge;
         const float height = card.y + card.height - ImGui::GetCursorScreenPos().y - below;
         show_row(session, *lens, std::clamp(height, units(60.0F), 0.75F * width), state, commands);
-        show_interval(session, zeno, width);
+        show_interval(session, index, width);
     }
     ImGui::EndGroup();
 }

@@ -30,18 +30,17 @@ struct StripLayout {
 };
 ResultCell cell_of(const Session& session, const ListedResult& result, const StripLayout& strip) {
     const Trajectory& trajectory = session.trajectory();
-    ResultCell cell{result_name(trajectory, result),
-                    time_text(trajectory, result.event, session.precision().of_event(result.event)), 0.0F};
-    // A proof made by itself leaves the cells as wide as they are, so that nothing moves when it arrives.
-    const EnclosedEvent* const enclosed = session.enclosed(result.event);
-    const bool is_asked = session.proof() != nullptr;
-    if (enclosed != nullptr && (is_asked || is_zeno_point(trajectory.events[result.event]))) cell.name += ", proved";
-    if (enclosed != nullptr && is_asked) cell.time = with_minus(short_text(enclosed->t));
+    const EventTime time = event_time(session, result.event);
+    ResultCell cell{result_name(trajectory, result), time.is_proved ? time.short_text : time.text(), 0.0F};
+    // Room for the time that a proof gives, so that nothing moves when it arrives.
+    const std::string widest = fmt::format("{:.{}f}(88)", trajectory.end_time, decimals_of_times(trajectory));
+    const float reserved = width_of(strip.is_low ? cell.name + "  " + widest : widest);
+    if (time.is_proved) cell.name += ", proved";
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
     // A long name leaves room for a neighbor; a time never loses its tolerance.
     cell.name = fitted(cell.name, (strip.is_low ? 1.0F : max_of_strip) * strip.room - units(sign_width));
     cell.time = fitted(cell.time, strip.room - units(sign_width));
-    cell.width = units(sign_width) + std::max(width_of(cell.name), width_of(cell.time));
+    cell.width = units(sign_width) + std::max({width_of(cell.name), width_of(cell.time), reserved});
     return cell;
 }
 
@@ -153,8 +152,8 @@ void show_result(const Session& session, const ListedResult& result, const Resul
     };
     put(0.5F * (line - ImGui::GetTextLineHeight()), cell.name, is_to_come ? faint_color() : text_color());
     put(line - units(1.0F), cell.time, is_to_come ? faint_color() : text_color());
-    tooltip(result_explanation(session, result.event),
-            {at.x, strip.y, cell.width, strip.height});  // keep the other results visible
+    tooltip(result_explanation(session, result.event), {at.x, strip.y, cell.width, strip.height},
+            true);  // the other results and the timeline stay visible
     if (pressed && !state.strip.was_dragged) commands.emplace_back(command::Select{is_chosen ? 0 : number});
 }
 

@@ -149,8 +149,10 @@ void show_proof(const Session& session, PanelState& state, Commands& commands) {
     begin_study("proof");
     const std::string_view what = not_proved(*session.model());
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
+    // A run that is proved by itself has no tubes yet.
+    const char* const request = session.shown_proof() != nullptr ? "Show tubes" : "Prove this run";
     ImGui::BeginDisabled(!what.empty());
-    if (ImGui::Button(is_under_way ? "Stop proving" : is_there ? "Forget proof" : "Prove this run"))
+    if (ImGui::Button(is_under_way ? "Stop proving" : is_there ? "Forget proof" : request))
         commands.push_back(is_under_way || is_there ? Command(command::StopProof{}) : Command(command::Prove{}));
     remember(state, "prove");
     ImGui::SameLine(0.0F, units(14.0F));

@@ -13,6 +13,7 @@
 #include "figure/label.hpp"
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
+#include "session/event_text.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
@@ -178,12 +179,13 @@ void slow_tooltip(const std::string& id, const std::string& text, PanelState& st
 
 bool waits_for_tooltip(const PanelState& state) { return state.pointed.is_early; }
 
-void tooltip(const std::string& label, const Rectangle& clear) {
+void tooltip(const std::string& label, const Rectangle& clear, bool prefers_above) {
     if (!wants_tooltip(label)) return;
     const std::string text = upright(label);
     const ImVec2 size = tooltip_size(text), all = ImGui::GetIO().DisplaySize;
-    const float gap = units(4.0F), below = clear.y + clear.height + gap;
-    place_tooltip({clear.x, below + size.y <= all.y ? below : clear.y - gap - size.y}, size);
+    const float gap = units(4.0F), below = clear.y + clear.height + gap, above = clear.y - gap - size.y;
+    const bool is_below = prefers_above ? above < 0.0F : below + size.y <= all.y;
+    place_tooltip({clear.x, is_below ? below : above}, size);
     show_tooltip(text);
 }
 
@@ -260,10 +262,9 @@ void NearestEvent::ask(int number, const Event& event, double x, double y) {
 void name_event(const Session& session, int number) {
     if (is_behind_dialog()) return;
     const auto index = static_cast<std::size_t>(number - 1);
-    const std::string text =
-        fmt::format("event {}, t = {} s\n{}\nclick: select it", number,
-                    achilles::number(session.trajectory().events[index].t, session.precision().of_event(index), 9),
-                    typeset_sentence(session.sentences().of(index)));
+    const std::string text = fmt::format(
+        "event {}, {}{}\n{}\nclick: select it", number, event_time_text(session, index),
+        session.enclosed(index) != nullptr ? ", proved" : "", typeset_sentence(session.sentences().of(index)));
     const ImVec2 size = tooltip_size(text), mouse = ImGui::GetIO().MousePos;
     const float above = mouse.y - size.y - units(12.0F);
     place_tooltip({mouse.x + units(12.0F), above >= 0.0F ? above : mouse.y + units(20.0F)}, size);

@@ -61,7 +61,7 @@ void section(const char* title, float free = 0.0F);
 // Tooltip for the last item, wrapped; not while a mouse button is down. In a menu it is placed beside the menu.
 void tooltip(const std::string& text);
 // The same, placed below or above `clear` without covering it.
-void tooltip(const std::string& text, const Rectangle& clear);
+void tooltip(const std::string& text, const Rectangle& clear, bool prefers_above = false);
 // The same after a second, beside the window: for a slider, whose neighbors stay visible. `id` names the row.
 void slow_tooltip(const std::string& id, const std::string& text, PanelState& state);
 // True if a menu or a dialog is in front of the panels.

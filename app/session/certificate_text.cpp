@@ -74,9 +74,10 @@ CertificateText certificate_text(const Session& session, std::size_t index) {
     const Certificate& certificate = *run.events[index].certificate;
     const bool has_bounces = !is_plastic_landing(run.events[index]);
     CertificateText text{title_of_zeno(run, index),
-                         !has_bounces            ? ""
-                         : certificate.certified ? "CERTIFIED"
-                                                 : "NOT CERTIFIED",
+                         !has_bounces                         ? ""
+                         : session.enclosed(index) != nullptr ? "PROVED"
+                         : certificate.certified              ? "CERTIFIED"
+                                                              : "NOT CERTIFIED",
                          where_cut(run, index),
                          {},
                          what_is_not_covered(session, index)};
@@ -92,7 +93,8 @@ CertificateText certificate_text(const Session& session, std::size_t index) {
                              inequality.right > 0.0 ? std::clamp(inequality.ratio(), 0.0, 1.0) : 0.0,
                              inequality.name == decision.closest().name});
     };
-    add(decision.time, "Zeno time", " s");
+    // Its error is that of the time from the cut on, with which a proof of the run has nothing to do.
+    add(decision.time, "time from the cut on", " s");
     add(decision.position, "position until then", units.position);
     add(decision.velocity, "velocity at that time", units.velocity);
     return text;
@@ -108,7 +110,6 @@ std::vector<std::string> certificate_lines(const Event& event) {
             minus_signs("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits)));
         return lines;
     }
-    lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
     lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
                                 bound_text(c.velocity_bound)));
     if (c.uniform_position)

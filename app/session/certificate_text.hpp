@@ -11,10 +11,10 @@ namespace achilles {
 
 struct CertificateText {
     std::string title;     // "Zeno 1", "Landing of wall"
-    std::string verdict;   // "CERTIFIED"; empty: the contact is made without a bounce
+    std::string verdict;   // "CERTIFIED", "PROVED"; empty: the contact is made without a bounce
     std::string sentence;  // "It would bounce infinitely often; ..."
     struct Row {
-        std::string error, bound, allowed;  // "Zeno time", "6.9e-07 s", "1e-06 s"
+        std::string error, bound, allowed;  // "time from the cut on", "6.9e-07 s", "1e-06 s"
         double share = 0.0;                 // bound/allowed
         bool is_nearest = false;            // the one nearest to its limit
     };
@@ -24,7 +24,7 @@ struct CertificateText {
 // Of an event with a certificate.
 CertificateText certificate_text(const Session& session, std::size_t event);
 
-// The bounds of the certificate line by line, for the details.
+// The bounds of the certificate line by line, for the details. The Zeno time is not among them: event_time() has it.
 std::vector<std::string> certificate_lines(const Event& event);
 
 // "9th", "21st".

@@ -7,6 +7,7 @@
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "session/number_text.hpp"
+#include "session/results_text.hpp"
 
 namespace achilles {
 
@@ -53,8 +54,7 @@ std::string event_title(const char* kind, const Session& session, const Event& e
 }
 
 std::string event_time_text(const Session& session, std::size_t event) {
-    return fmt::format("t = {} s",
-                       number(session.trajectory().events[event].t, session.precision().of_event(event), 10));
+    return fmt::format("t = {} s", event_time(session, event).text());
 }
 
 std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {

@@ -10,6 +10,7 @@
 #include "output/event_descriptions.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
+#include "session/certificate_text.hpp"
 #include "session/event_rows.hpp"
 #include "session/number_text.hpp"
 
@@ -17,16 +18,15 @@ namespace achilles {
 
 std::string result_explanation(const Session& session, std::size_t index) {
     const Event& event = session.trajectory().events[index];
-    const std::string event_text = typeset_sentence(
-        fmt::format("{} at t = {} s: {}", names_of(event).name,
-                    known_digits(event.t, session.precision().of_event(index), 10), session.sentences().of(index)));
-    if (session.precision().is_beyond(event.t)) return event_text;  // a certificate refers to the computed motion
-    if (!event.is_zeno()) return event_text + proved_text(session, index, "\n") + "\nClick: why";
-    if (session.enclosed(index) != nullptr) return event_text + proved_text(session, index, "\n");
-    std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "not certified";
-    for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
-        proof.replace(at, 2, "\n");
-    return event_text + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
+    std::string text = typeset_sentence(
+        fmt::format("{} at t = {} s{}: {}", names_of(event).name, event_time(session, index).text(),
+                    session.enclosed(index) != nullptr ? ", proved" : "", session.sentences().of(index)));
+    if (session.precision().is_beyond(event.t)) return text;  // a certificate refers to the computed motion
+    if (!event.is_zeno()) return text + "\nClick: why";
+    if (session.enclosed(index) != nullptr) return text;
+    if (!event.certificate || !event.certificate->certified) return text + "\nnot certified";
+    for (const std::string& line : certificate_lines(event)) text += "\n" + typeset_sentence(line);
+    return text + (is_plastic_landing(event) ? "" : "\n" + precision_text());
 }
 
 std::string result_name(const Trajectory& trajectory, const ListedResult& result) {
@@ -68,26 +68,50 @@ std::string precision_text() {
            "certified.";
 }
 
-std::string time_text(const Trajectory& trajectory, std::size_t index, double error) {
+std::string EventTime::text() const { return with_minus(digits + (bound.empty() ? "" : " \u00b1 " + bound)); }
+
+int decimals_of_times(const Trajectory& trajectory) {
+    constexpr int most = 10, digits = 12;  // as wide as the column of times
+    const double end = std::max(std::abs(trajectory.run.options.start_time), std::abs(trajectory.end_time));
+    const int whole = end < 10.0 ? 1 : static_cast<int>(std::floor(std::log10(end))) + 1;
+    return std::clamp(digits - whole, 0, most);
+}
+
+EventTime event_time(const Trajectory& trajectory, std::size_t index, double error, const EnclosedEvent* enclosed) {
     const Event& event = trajectory.events[index];
-    if (!std::isfinite(error)) return unknown_number;
-    const bool is_proved = event.certificate && event.certificate->certified;
-    const double low = is_proved ? event.certificate->zeno_low : 0.0,
-                 high = is_proved ? event.certificate->zeno_high : 0.0;
-    const double half = 0.5 * (high - low);
-    if (!is_proved || !(half > 0.0)) return number_with_decimals(event.t, error, 6);
+    const int decimals = decimals_of_times(trajectory);
+    if (enclosed == nullptr && !std::isfinite(error)) return {unknown_number, "", unknown_number, false};
+    const bool is_certified = event.certificate && event.certificate->certified;
+    const Interval bounds = enclosed != nullptr ? enclosed->t
+                            : is_certified      ? Interval(event.certificate->zeno_low, event.certificate->zeno_high)
+                                                : Interval(event.t);
+    const double half = 0.5 * width(bounds);
+    if (enclosed == nullptr && !(half > 0.0)) {
+        const std::string digits = number_with_decimals(event.t, error, std::min(decimals, 9));
+        return {digits, "", digits, false};
+    }
     // Leave out digits within the tolerance.
-    const double integration = std::max(error, integration_error_of_time(trajectory, index));
-    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(half, integration)))), 0, 12);
-    const std::string text = fmt::format("{:.{}f}", event.t, digits);
-    const double value = std::strtod(text.c_str(), nullptr);
-    return text + " \u00b1 " + rounded_up(std::max({high - value, value - low, integration}));
+    const double integration =
+        enclosed != nullptr ? 0.0 : std::max(error, integration_error_of_time(trajectory, index));
+    const double off = std::max(half, integration);
+    const int known = off > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(off))), 0, decimals) : decimals;
+    const double center = enclosed != nullptr ? mid(bounds) : event.t;
+    const std::string digits = fmt::format("{:.{}f}", center, known);
+    const double value = std::strtod(digits.c_str(), nullptr), unit = std::pow(10.0, -known);
+    double units = std::ceil(std::max({bounds.hi() - value, value - bounds.lo(), integration, 0.0}) / unit);
+    while (value + units * unit < bounds.hi() || value - units * unit > bounds.lo()) ++units;
+    const std::string last = fmt::format("{:.0f}", units);
+    std::string bound = fmt::format("{:g}", std::strtod(fmt::format("{}e-{}", last, known).c_str(), nullptr));
+    if (const std::size_t zero = bound.find("e-0"); zero != std::string::npos) bound.erase(zero + 2, 1);
+    return {digits, bound, fmt::format("{}({})", digits, last), enclosed != nullptr};
+}
+
+EventTime event_time(const Session& session, std::size_t event) {
+    return event_time(session.trajectory(), event, session.precision().of_event(event), session.enclosed(event));
 }
 
 std::string proved_text(const Session& session, std::size_t event, const std::string& before) {
-    const EnclosedEvent* const enclosed = session.enclosed(event);
-    if (enclosed == nullptr) return "";
-    return before + "proved: t in " + with_minus(interval_text(enclosed->t.lo(), enclosed->t.hi()));
+    return session.enclosed(event) == nullptr ? "" : before + "proved: t = " + event_time(session, event).text() + " s";
 }
 
 }  // namespace achilles

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <optional>
 
@@ -15,6 +16,7 @@
 #include "output/contacts.hpp"
 #include "output/precision.hpp"
 #include "session/replay_script.hpp"
+#include "session/results_text.hpp"
 
 namespace achilles {
 
@@ -87,8 +89,11 @@ std::vector<RunStep> steps_of(const Trajectory& run, const Precision& precision)
     std::vector<RunStep> steps;
     for (std::size_t i = 0; i < run.events.size(); ++i) {
         const Event& event = run.events[i];
-        const double error = precision.of_event(i);
         if (!event.changes_held()) continue;
+        // The digits that the bound of this time supports.
+        double error = precision.of_event(i);
+        if (const EventTime time = event_time(run, i, error); !time.bound.empty())
+            error = std::max(error, std::strtod(time.bound.c_str(), nullptr));
         const std::string contacts = event_contacts_text(run, event);
         steps.push_back({event.opened.empty() || !event.is_impact()
                              ? fmt::format("{}{}{}", names_of(event).label, contacts.empty() ? "" : " ", contacts)

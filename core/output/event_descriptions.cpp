@@ -37,7 +37,7 @@ std::optional<double> proved_time(const Event& event) {
 }
 
 EventDescriptions::EventDescriptions(const Trajectory& trajectory, const ErrorEstimate* estimate, Angles angles)
-    : trajectory_(trajectory), precision_(trajectory, estimate) {
+    : trajectory_(trajectory), precision_(trajectory, estimate), shows_bounds_(angles == Angles::radians) {
     const Model& model = *trajectory.model;
     is_of_several_ = has_several_places(model);
     if (model.has_friction()) slips_ = std::make_shared<Slips>(trajectory);
@@ -281,9 +281,10 @@ std::string EventDescriptions::zeno(std::size_t index) const {
     text += lost(pile.loss, event);
     if (precision_.is_beyond(event.t)) return text;  // a certificate holds for the computed motion only
     const std::optional<double> bound = proved_time(event);
-    text += !bound         ? ", not certified"
-            : *bound > 0.0 ? fmt::format(", certified to {} s from the cut", rounded_up(*bound))
-                           : ", certified from the cut";
+    text += !bound           ? ", not certified"
+            : !shows_bounds_ ? ", certified"
+            : *bound > 0.0   ? fmt::format(", certified to {} s from the cut", rounded_up(*bound))
+                             : ", certified from the cut";
     if (by_convention_ && *by_convention_ < index)
         text += fmt::format(", given Moreau's law at event {}", *by_convention_ + 1);
     return text;

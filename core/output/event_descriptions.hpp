@@ -17,7 +17,8 @@ namespace achilles {
 // A sentence such as "knee is held: 10 impacts before the cut, 1.3 J lost, certified to 1e-6 s from the cut". The
 // certificate bounds the distance of the event from the Zeno time of the exact motion that starts at the computed state
 // of the cut. The word "proved" is reserved for whole runs (proof.hpp). Units are those of the file, but gap speeds are
-// in deg/s if angles are shown in degrees.
+// in deg/s if angles are shown in degrees, as in the explorer. That shows each time with its bound, so its sentences say
+// only "certified".
 class EventDescriptions {
  public:
     enum class Angles { radians, degrees };
@@ -75,6 +76,7 @@ class EventDescriptions {
 
     const Trajectory& trajectory_;
     Precision precision_;
+    bool shows_bounds_ = true;
     std::shared_ptr<Slips> slips_;  // null without friction
     bool is_of_several_ = false;    // contacts, and joints with friction
     std::string energy_unit_;

@@ -150,9 +150,9 @@ TEST(FifteenTasks, TwoRestitutionsStandSideBySide) {
     for (const Trajectory* run : {hands.session.pinned()[0].trajectory.get(), &hands.session.trajectory()}) {
         const int zeno = number_of(hands.session, Event::Kind::zeno, 1);
         ASSERT_GT(zeno, 0);
-        for (const Event& event : run->events)
-            if (event.kind == Event::Kind::zeno) {
-                EXPECT_TRUE(hands.says(number(event.t, "{:.10g}"))) << hands.letters();
+        for (std::size_t i = 0; i < run->events.size(); ++i)
+            if (run->events[i].kind == Event::Kind::zeno) {
+                EXPECT_TRUE(hands.says(event_time(*run, i).digits)) << hands.letters();
                 break;
             }
     }

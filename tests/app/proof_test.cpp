@@ -175,13 +175,15 @@ TEST(ProofPanels, TellWhatIsProved) {
     const auto zeno = std::find_if(hands.session.trajectory().events.begin(), hands.session.trajectory().events.end(),
                                    [](const Event& event) { return event.kind == Event::Kind::zeno; });
     const auto at = static_cast<std::size_t>(zeno - hands.session.trajectory().events.begin());
-    const std::string time = short_text(hands.session.enclosed(at)->t);
-    EXPECT_TRUE(hands.says(time)) << time;
+    const EventTime time = event_time(hands.session, at);
+    EXPECT_TRUE(time.is_proved);
+    EXPECT_TRUE(hands.says(time.text())) << time.text();
     hands.click("tab events");
-    EXPECT_TRUE(hands.says("proved t = " + time + " s"));
+    EXPECT_TRUE(hands.says("proved \u00b7 "));
     hands.session.apply(command::Select{static_cast<int>(at) + 1});
     hands.rest(2);
-    EXPECT_TRUE(hands.says(proved_text(hands.session, at)));
+    EXPECT_TRUE(hands.says("Zeno 1, time " + time.text() + " s, PROVED"));
+    EXPECT_FALSE(hands.state.places.contains("prove run"));
     EXPECT_TRUE(hands.says("Covered by the proof of this run"));
     hands.session.apply(command::Select{0});
     hands.click("tab proof");

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "app/hands.hpp"
+#include "core/systems.hpp"
 #include "figure/axes.hpp"
 #include "number/angle.hpp"
 #include "panels/widgets.hpp"
@@ -31,11 +33,11 @@ TEST(Results, TellEveryTimeAndHowWellItIsKnown) {
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Event& event = all[i];
             if (event.kind != Event::Kind::zeno) continue;
-            const std::string text = time_text(session.trajectory(), i);
-            const std::size_t sign = text.find(" \u00b1 ");
-            ASSERT_NE(sign, std::string::npos) << text;
-            const double value = std::strtod(text.c_str(), nullptr),
-                         off = std::strtod(text.c_str() + sign + 4, nullptr);
+            const EventTime time = event_time(session.trajectory(), i);
+            const std::string text = time.text();
+            ASSERT_FALSE(time.bound.empty()) << text;
+            const double value = std::strtod(time.digits.c_str(), nullptr),
+                         off = std::strtod(time.bound.c_str(), nullptr);
             EXPECT_LE(value - off, event.certificate->zeno_low) << text;
             EXPECT_GE(value + off, event.certificate->zeno_high) << text;
             const double integration = integration_error_of_time(session.trajectory(), i);
@@ -54,10 +56,84 @@ TEST(Results, ShowNoDigitsThatTheIntegrationMayChange) {
     const auto& events = session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (events[i].kind != Event::Kind::zeno) continue;
-        const std::string text = time_text(session.trajectory(), i);
-        EXPECT_LT(text.find(" "), 10U) << text;
-        EXPECT_GT(std::strtod(text.c_str() + text.find(" \u00b1 ") + 4, nullptr), 1e-5) << text;
+        const EventTime time = event_time(session.trajectory(), i);
+        EXPECT_LT(time.digits.size(), 10U) << time.text();
+        EXPECT_GT(std::strtod(time.bound.c_str(), nullptr), 1e-5) << time.text();
     }
+}
+
+// Every system of the gallery: the digits have a bound that contains the certified interval, and no digit is finer than
+// it.
+TEST(Results, DigitsOfEveryZenoTimeLieInTheirBound) {
+    int found = 0;
+    for (const std::string& name : test::all_systems()) {
+        const Session session = test::session(name);
+        const Trajectory& run = session.trajectory();
+        for (std::size_t i = 0; i < run.events.size(); ++i) {
+            const Event& event = run.events[i];
+            if (!is_zeno_point(event) || !event.certificate || !event.certificate->certified) continue;
+            const EventTime time = event_time(session, i);
+            if (session.precision().is_beyond(event.t) && time.digits == "?") continue;
+            if (time.bound.empty()) continue;  // an interval of one number
+            ++found;
+            const double value = std::strtod(time.digits.c_str(), nullptr),
+                         bound = std::strtod(time.bound.c_str(), nullptr);
+            EXPECT_LE(value - bound, event.certificate->zeno_low) << name << " " << time.text();
+            EXPECT_GE(value + bound, event.certificate->zeno_high) << name << " " << time.text();
+            const std::size_t point = time.digits.find('.');
+            const auto decimals = point == std::string::npos ? 0 : static_cast<int>(time.digits.size() - point) - 1;
+            EXPECT_LE(std::abs(value - event.t), std::max(bound, 0.5 * std::pow(10.0, -decimals))) << time.text();
+            EXPECT_GE(std::pow(10.0, 1 - decimals), 0.5 * bound) << name << " too few digits: " << time.text();
+            EXPECT_LE(std::pow(10.0, -decimals), 2.0 * bound) << name << " too many digits: " << time.text();
+        }
+    }
+    EXPECT_GT(found, 60);
+}
+
+// List, strip, card, tooltip and lens show one time with one bound; after a proof the proved ones.
+TEST(Results, HaveOneTimeEverywhere) {
+    Hands hands("ball_on_sine", test::surface(1600, 1000));
+    constexpr std::size_t zeno = 9;
+    ASSERT_TRUE(is_zeno_point(hands.session.trajectory().events[zeno]));
+    const auto check = [&](const std::string& where, bool is_in_strip_alone = false) {
+        std::string time = event_time(hands.session, zeno).text();
+        std::erase(time, ' ');
+        const EventTime shown = event_time(hands.session, zeno);
+        const std::string digits = shown.digits, letters = hands.letters();
+        if (is_in_strip_alone && shown.is_proved) time = shown.short_text;
+        EXPECT_NE(letters.find(time), std::string::npos) << where << ": " << letters;
+        for (std::size_t at = letters.find("2.72514"); at != std::string::npos; at = letters.find("2.72514", at + 1)) {
+            EXPECT_EQ(letters.substr(at, digits.size()), digits) << where;
+            EXPECT_FALSE(std::isdigit(static_cast<unsigned char>(letters[at + digits.size()]))) << where;
+        }
+        EXPECT_EQ(letters.find("[2.72"), std::string::npos) << where;
+        EXPECT_EQ(letters.find("certifiedto7"), std::string::npos) << where;
+    };
+    for (const bool is_proved : {false, true}) {
+        if (is_proved) hands.session.apply(parse_command("prove"));
+        hands.session.settle();
+        hands.rest(2);
+        const std::string when = is_proved ? "proved, " : "";
+        check(when + "list", true);
+        hands.point("result 10");
+        check(when + "tooltip");
+        hands.session.apply(command::Select{static_cast<int>(zeno) + 1});
+        hands.rest(2);
+        check(when + "card");
+        EXPECT_EQ(hands.says("PROVED"), is_proved);
+        hands.session.apply(command::Show{"lens", true});
+        hands.rest(2);
+        check(when + "lens");
+        hands.session.apply(command::Show{"lens", false});
+        hands.session.apply(command::Select{0});
+    }
+    const EnclosedEvent* const enclosed = hands.session.enclosed(zeno);
+    ASSERT_NE(enclosed, nullptr);
+    const EventTime time = event_time(hands.session, zeno);
+    const double value = std::strtod(time.digits.c_str(), nullptr), bound = std::strtod(time.bound.c_str(), nullptr);
+    EXPECT_LE(value - bound, enclosed->t.lo());
+    EXPECT_GE(value + bound, enclosed->t.hi());
+    EXPECT_LT(bound, 1e-8);
 }
 
 TEST(Results, SelectAndShowTheProof) {

@@ -175,7 +175,7 @@ TEST(RunTable, SaysWhatDiffersAndWhatFollows) {
     EXPECT_EQ(table.rows[0].differs, (std::vector<bool>{false, true, true}));
     EXPECT_TRUE(table.rows[1].is_cause);
     EXPECT_FALSE(table.rows[2].is_cause);
-    EXPECT_EQ(row("Zeno 1 (s)").values[1], "2.72514216") << to_text(table);
+    EXPECT_EQ(row("Zeno 1 (s)").values[1], "2.7251422") << to_text(table);
     EXPECT_TRUE(row("Zeno 1 (s)").differs[1]);
     EXPECT_EQ(row("end (s)").differs, (std::vector<bool>{false, false, false}));
     EXPECT_TRUE(row("Zeno 1 (s)").change.empty()) << "of two runs alone";
