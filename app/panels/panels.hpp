@@ -144,7 +144,15 @@ struct PointedControl {
 // A zoom box being drawn in a plot.
 struct PlotBox {
     int plot = -1;
-    Point from;  // pixels
+    Point from;      // pixels
+    int button = 1;  // the mouse button that draws it
+};
+
+// A click in a plot, which waits until it cannot become a double click.
+struct PlotClick {
+    int plot = 0;                    // from 1; 0: none
+    int event = 0;                   // the event under it, from 1; 0: the time
+    double time = 0.0, since = 0.0;  // s: of the run; ImGui time
 };
 
 // Mouse drag in the mechanism view. While it lasts, the camera and the arrow scale are frozen so that the target does
@@ -259,6 +267,7 @@ struct PanelState {
     ViewHistory views;
     PaletteState palette;
     PlotBox box;
+    PlotClick plot_click;
     MechanismDrag held;
     PlaneView plane;
     SweepState sweep;

@@ -1,6 +1,6 @@
 // The grid of plots at the right, each with the current time and the time under the mouse. The wheel zooms at the
-// mouse, over an axis only along it. Dragging pans, and the right button draws a zoom box. A double click fits; a click
-// on a plot over time goes to that time.
+// mouse, over an axis only along it. Dragging pans, and the right button, or Shift, draws a zoom box. A double click
+// fits; a click on a plot over time goes to that time.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -54,10 +54,19 @@ void paint_instant(const Session& session, const PlotPlace& place, const Sample&
         list->AddLine({at, area.y}, {at, area.y + area.height}, packed(text_color(), 0.45F * strength), units(1.0F));
     }
     const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
+    // At an event a ring, in which its marker is seen.
+    const auto& events = session.trajectory().events;
+    const auto event =
+        std::lower_bound(events.begin(), events.end(), sample.t, [](const Event& one, double t) { return one.t < t; });
+    const bool is_at_event = event != events.end() && event->t == sample.t;
     for (std::size_t i = 1; i < values.size(); ++i) {
         const double y = map.y(values[i]);
         if (hidden.contains(i - 1) || !std::isfinite(x) || !std::isfinite(y)) continue;
         const ImVec2 center{static_cast<float>(x), static_cast<float>(y)};
+        if (is_at_event) {
+            list->AddCircle(center, units(8.0F), packed(text_color(), strength), 24, units(1.5F));
+            continue;
+        }
         list->AddCircleFilled(center, units(5.0F), packed(session.theme().background), 20);
         list->AddCircleFilled(center, units(3.5F), packed(text_color(), strength), 20);
     }
@@ -156,19 +165,21 @@ void use_drag(const PlotPlace& place, Commands& commands) {
         zoom_to(map, place.plot, a.x - delta.x, a.x + a.width - delta.x, a.y - delta.y, a.y + a.height - delta.y));
 }
 
-// Right button: draws a box and zooms to it on release.
+// Right button, or left button with Shift: draws a box and zooms to it on release.
 void use_box(const PlotPlace& place, PanelState& state, Commands& commands) {
     const int number = static_cast<int>(place.plot);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const Rectangle& a = place.area;
     const Point corner{std::clamp<double>(mouse.x, a.x, a.x + a.width),
                        std::clamp<double>(mouse.y, a.y, a.y + a.height)};
-    if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) state.box = {number, corner};
+    const bool is_left = ImGui::GetIO().KeyShift && ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    if (ImGui::IsItemHovered() && (is_left || ImGui::IsMouseClicked(ImGuiMouseButton_Right)))
+        state.box = {number, corner, is_left ? ImGuiMouseButton_Left : ImGuiMouseButton_Right};
     if (state.box.plot != number) return;
     const Point from = state.box.from;
     const auto [left, right] = std::minmax(from.x, corner.x);
     const auto [top, bottom] = std::minmax(from.y, corner.y);
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+    if (ImGui::IsMouseDown(state.box.button)) {
         const ImVec2 low{static_cast<float>(left), static_cast<float>(top)};
         const ImVec2 high{static_cast<float>(right), static_cast<float>(bottom)};
         ImGui::GetWindowDrawList()->AddRectFilled(low, high, packed(text_color(), 0.08F));
@@ -210,22 +221,32 @@ std::optional<int> event_at(const Session& session, const PlotPlace& place) {
     return nearest.found();
 }
 
-void use_click(const Session& session, const PlotPlace& place, Commands& commands) {
+// A click selects the event or goes to the time under it, unless it becomes a double click, which fits the plot.
+void use_click(const Session& session, const PlotPlace& place, PanelState& state, Commands& commands) {
     const int number = static_cast<int>(place.plot) + 1;
+    const ImGuiIO& io = ImGui::GetIO();
+    PlotClick& waiting = state.plot_click;
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+        waiting = {};
         commands.emplace_back(command::Fit{number});
         return;
+    }
+    const bool is_late = ImGui::GetTime() - waiting.since > double{io.MouseDoubleClickTime};
+    if (waiting.plot == number && (is_late || ImGui::IsMouseClicked(ImGuiMouseButton_Left))) {
+        if (waiting.event > 0)
+            commands.emplace_back(command::Select{waiting.event});
+        else if (waiting.time != session.time())
+            move_time(session, waiting.time, commands);
+        waiting = {};
     }
     // The left button was released where it was pressed, and not in a double click.
     const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
     if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left) ||
-        ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] > 1 || std::hypot(moved.x, moved.y) > click)
+        io.MouseClickedLastCount[ImGuiMouseButton_Left] > 1 || std::hypot(moved.x, moved.y) > click)
         return;
-    if (const auto event = event_at(session, place)) return commands.emplace_back(command::Select{*event}), void();
-    if (!place.over_time) return;
-    const PanelMap& map = place.map;
-    const double time = map.x.value(ImGui::GetIO().MousePos.x);
-    if (time != session.time()) move_time(session, time, commands);
+    const std::optional<int> event = event_at(session, place);
+    if (!event && !place.over_time) return;
+    waiting = {number, event.value_or(0), place.map.x.value(io.MousePos.x), io.MouseClickedTime[ImGuiMouseButton_Left]};
 }
 
 // A part of the card that reacts to the mouse. It uses the wheel, so that no panel scrolls.
@@ -246,9 +267,12 @@ void use_mouse(const Session& session, const PlotPlace& place, PanelState& state
     const bool hovered = hoverable_area(name, a);
     remember(state, name);
     if (hovered) use_wheel(place, true, true, commands);
-    if (ImGui::IsItemActive()) use_drag(place, commands);
-    use_click(session, place, commands);
+    const bool was_box = state.box.plot == static_cast<int>(place.plot);
     use_box(place, state, commands);
+    if (!was_box && state.box.plot < 0) {
+        if (ImGui::IsItemActive()) use_drag(place, commands);
+        use_click(session, place, state, commands);
+    }
     // Markers are only near the axes' area, and not tested while a button is down.
     if (hovered && !ImGui::IsAnyMouseDown())
         if (const auto event = event_at(session, place)) name_event(session, *event);
@@ -446,6 +470,14 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
     }
     const char* text = "link time";
     const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(text).x;
+    // What the mouse does in a plot, while it is over one.
+    const char* const hint = "right drag: zoom to a box \u00b7 double click: all";
+    const float free = content_right() - width - units(16.0F) - ImGui::GetCursorPosX() - units(16.0F);
+    if (ImGui::IsWindowHovered() && ImGui::CalcTextSize(hint).x <= free) {
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + units(16.0F));
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", hint);
+    }
     ImGui::SetCursorPos({content_right() - width, y});
     bool linked = plots.linked();
     if (ImGui::Checkbox(text, &linked)) commands.emplace_back(command::Link{linked});

@@ -218,7 +218,7 @@ void begin_typing(const Slider& slider, TypedValue& typed) {
     typed.is_new = true;
 }
 
-// A double click opens the text field; a right click restores the file's value.
+// A double click opens the text field, as a click on the number does; a right click restores the file's value.
 bool clicked(Slider& slider, PanelState& state) {
     if (!ImGui::IsItemHovered()) return false;
     const double now = slider.value;
@@ -312,7 +312,7 @@ double roundest(double low, double high) {
     return low;
 }
 
-bool waits_for_click(const PanelState& state) { return !state.pressed.clicked.empty(); }
+bool waits_for_click(const PanelState& state) { return !state.pressed.clicked.empty() || state.plot_click.plot > 0; }
 
 void mark_changed() {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
@@ -345,11 +345,13 @@ bool moved(Slider& slider, PanelState& state) {
     changed = moved_by_keys(slider, state) || clicked(slider, state) || changed;
     ImGui::SameLine(0.0F, 0.0F);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::InvisibleButton(("##value of " + slider.id).c_str(),
-                           {std::max(1.0F, width - track), ImGui::GetFrameHeight()},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const bool is_pressed_value = ImGui::InvisibleButton(
+        ("##value of " + slider.id).c_str(), {std::max(1.0F, width - track), ImGui::GetFrameHeight()},
+        ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     remember(state, "value of " + slider.id);
-    slow_tooltip(slider.id, about, state);
+    slow_tooltip(slider.id, about + " \u00b7 click: type", state);
+    if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_TextInput);
+    if (is_pressed_value && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) begin_typing(slider, state.typed);
     changed = clicked(slider, state) || changed;
     const std::string text = shown_in(width - track - units(4.0F), slider, slider.value);
     ImGui::GetWindowDrawList()->AddText({std::floor(at.x + width - track - ImGui::CalcTextSize(text.c_str()).x),

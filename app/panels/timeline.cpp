@@ -87,11 +87,17 @@ void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
                             {x, track.top + units(5.0F)}, packed(text_color()));
 }
 
+// Of the last item; below it would be the timeline.
+void tooltip_above(const std::string& text) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y}, true);
+}
+
 void play_button(const Session& session, PanelState& state, Commands& commands) {
     const ImVec2 size{units(40.0F), ImGui::GetFrameHeight()};
     if (ImGui::Button("##play", size)) perform(action("Play"), session, state, commands);
     remember(state, "play");
-    tooltip(session.playing() ? "pause (space)" : "play (space)");
+    tooltip_above(session.playing() ? "pause (space)" : "play (space)");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     paint_play_sign({0.5F * (low.x + high.x), 0.5F * (low.y + high.y)}, session.playing());
 }
@@ -101,7 +107,7 @@ bool step_button(const char* name, float side, const char* about, PanelState& st
     const ImVec2 size{units(28.0F), ImGui::GetFrameHeight()};
     const bool pressed = ImGui::Button((std::string("##") + name).c_str(), size);
     remember(state, name);
-    tooltip(about);
+    tooltip_above(about);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const ImVec2 c{0.5F * (low.x + high.x), 0.5F * (low.y + high.y)};
     const float r = units(4.5F) * side;
@@ -137,7 +143,7 @@ void speed_slider(const Session& session, PanelState& state, Commands& commands)
         const double next = std::pow(10.0, 0.1 * std::round(10.0 * std::log10(session.scene().speed()) + steps));
         if (steps != 0) commands.emplace_back(command::Speed{std::clamp(next, command::slowest, command::fastest)});
     }
-    tooltip("playback speed; right click: real time");
+    tooltip_above("playback speed; right click: real time");
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) commands.emplace_back(command::Speed{1.0});
     const std::string text = fmt::format("{:.3g}\u00d7", session.scene().speed());
     ImGui::SameLine(0.0F, units(6.0F));
@@ -155,7 +161,7 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
     bool loops = session.scene().loops();
     if (ImGui::Checkbox("loop", &loops)) commands.emplace_back(command::Loop{loops});
     remember(state, "loop");
-    tooltip("start again at the end of the run");
+    tooltip_above("start again at the end of the run");
 }
 
 // The event whose marker is under the mouse.

@@ -210,6 +210,48 @@ TEST(PlotInput, TheRightButtonDrawsABoxToZoomTo) {
     EXPECT_NEAR(hand.x().high, 10.0, 0.1);
 }
 
+// The same for a hand without a right button; the plots say what the mouse does while it is over them.
+TEST(PlotInput, ShiftDrawsABoxAndAHintSaysSo) {
+    PlotHand hand;
+    EXPECT_FALSE(hand.says("zoom to a box"));
+    hand.point("plot 1", 0.25);
+    EXPECT_TRUE(hand.says("right drag: zoom to a box"));
+    const double time = hand.session.time();
+    hand.hand.keys = {key::left_shift};
+    hand.rest(1);
+    hand.hand.left = true;
+    hand.rest(1);
+    const Rectangle place = hand.state.places.at("plot 1");
+    hand.hand.mouse_x = place.x + 0.5 * place.width;
+    hand.hand.mouse_y = place.y + 0.75 * place.height;
+    hand.rest(2);
+    hand.hand.left = false;
+    hand.rest(1);
+    hand.hand.keys.clear();
+    hand.rest(2);
+    hand.settle();
+    EXPECT_NEAR(hand.x().low, 5.0, 0.1);
+    EXPECT_NEAR(hand.x().high, 10.0, 0.1);
+    EXPECT_EQ(hand.session.time(), time);
+}
+
+// A double click fits the plot and does nothing else: neither the time nor the chosen event changes.
+TEST(PlotInput, ADoubleClickKeepsTimeAndEvent) {
+    PlotHand hand;
+    hand.session.apply(command::Select{10});
+    hand.rest(2);
+    const double time = hand.session.time();
+    hand.all.clear();
+    hand.double_click("plot 1", 0.7);
+    hand.settle();
+    hand.rest(30);
+    EXPECT_EQ(hand.all, std::vector<Command>{command::Fit{2}});
+    EXPECT_EQ(hand.session.time(), time);
+    EXPECT_EQ(hand.session.selected(), 10);
+    hand.click("plot 1", 0.7);
+    EXPECT_NE(hand.session.time(), time);
+}
+
 TEST(PlotInput, ThePointersInstantIsInEveryPlotOverTime) {
     PlotHand hand;
     const Image before = hand.picture();

@@ -452,5 +452,20 @@ TEST(Slider, AllDifferencesAreListedAndPutBack) {
     EXPECT_FALSE(hands.says("Differs from the file"));
 }
 
+// A click on the number starts typing, as a double click does.
+TEST(Slider, AClickOnItsNumberStartsTyping) {
+    for (const bool is_double : {false, true}) {
+        test::Hands hands("ball_on_sine");
+        if (is_double)
+            hands.double_click("value of set e");
+        else
+            hands.click("value of set e");
+        EXPECT_EQ(hands.state.typed.id, "set e");
+        hands.type("0.3");
+        hands.press(key::enter);
+        EXPECT_EQ(hands.session.value("e"), 0.3) << is_double;
+    }
+}
+
 }  // namespace
 }  // namespace achilles
