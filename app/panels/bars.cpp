@@ -117,11 +117,14 @@ namespace {
 
 constexpr float edge = 10.0F;  // left and right, as for the panels
 
+constexpr float sign_room = 16.0F, line_room = 22.0F;
+
 // A colored marker and its meaning, on the current line.
-void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign) {
+void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign,
+                  float room = sign_room) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::Dummy({units(16.0F), ImGui::GetTextLineHeight()});
-    sign(ImGui::GetWindowDrawList(), {at.x + units(8.0F), at.y + 0.5F * ImGui::GetTextLineHeight()});
+    ImGui::Dummy({units(room), ImGui::GetTextLineHeight()});
+    sign(ImGui::GetWindowDrawList(), {at.x + units(0.5F * sign_room), at.y + 0.5F * ImGui::GetTextLineHeight()});
     ImGui::SameLine(0.0F, units(2.0F));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     ImGui::TextUnformatted(text.c_str());
@@ -144,12 +147,39 @@ std::vector<Markers> legend_markers(const Session& session) {
 
 float legend_gap() { return units(12.0F); }
 
+// The pinned runs that are drawn. Beside them the present run is drawn in ink: only its dashes tell the phases apart.
+std::vector<int> drawn_pinned(const Session& session) {
+    std::vector<int> places;
+    for (const PinnedRun& run : session.pinned())
+        if (run.shown) places.push_back(run.place);
+    return places;
+}
+
+// A piece of a curve as in the plots.
+void paint_piece(ImDrawList* list, float from, float to, float y, const Stroke& stroke) {
+    const float width = units(static_cast<float>(stroke.width));
+    std::size_t part = 0;
+    for (float x = from; x < to; ++part) {
+        const float length =
+            stroke.dash.empty() ? to - from : units(static_cast<float>(stroke.dash[part % stroke.dash.size()]));
+        if (part % 2 == 0) list->AddLine({x, y}, {std::min(x + length, to), y}, packed(stroke.color), width);
+        x += length;
+    }
+}
+
+constexpr const char* pinned_label = "pinned";
+
 float legend_width(const Session& session) {
     float width = 0.0F;
     const auto add = [&](const std::string& text) {
         width += ImGui::CalcTextSize(text.c_str()).x + units(18.0F) + legend_gap();
     };
-    for (const PhaseLook look : possible_looks(*session.model())) add(legend_text(look));
+    const std::vector<int> pinned = drawn_pinned(session);
+    for (const PhaseLook look : possible_looks(*session.model())) {
+        add(legend_text(look));
+        if (!pinned.empty()) width += units(line_room);
+    }
+    if (!pinned.empty()) add(pinned_label), width += units(line_room);
     for (const Markers& markers : legend_markers(session)) add(markers.label);
     if (session.proof() != nullptr) add(proof_tube(session.theme()).label);
     return width;
@@ -163,11 +193,27 @@ void show_legend(const Session& session) {
     ImGui::SameLine();
     if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
     ImGui::SetCursorPosX(content_right() - units(edge) - width + between);
+    const std::vector<int> pinned = drawn_pinned(session);
+    const float more = pinned.empty() ? 0.0F : line_room;
     for (const PhaseLook look : possible_looks(*session.model())) {
-        legend_entry(legend_text(look), [&](ImDrawList* list, ImVec2 c) {
+        const auto sign = [&](ImDrawList* list, ImVec2 c) {
             list->AddRectFilled({c.x - units(6.0F), c.y - units(3.0F)}, {c.x + units(6.0F), c.y + units(3.0F)},
                                 packed(phase_color(session.theme(), look), 0.85F));
-        });
+            Stroke stroke = phase_stroke(session.theme(), look, 0, 1);
+            stroke.color = session.theme().ink;
+            paint_piece(list, c.x + units(9.0F), c.x + units(9.0F + more), c.y, stroke);
+        };
+        legend_entry(legend_text(look), sign, sign_room + more);
+        ImGui::SameLine(0.0F, between);
+    }
+    if (!pinned.empty()) {
+        const auto sign = [&](ImDrawList* list, ImVec2 c) {
+            const float from = c.x - units(6.0F), piece = units(line_room + 12.0F) / static_cast<float>(pinned.size());
+            for (std::size_t i = 0; i < pinned.size(); ++i)
+                paint_piece(list, from + piece * static_cast<float>(i), from + piece * static_cast<float>(i + 1), c.y,
+                            pinned_stroke(session.theme(), {}, pinned[i]));
+        };
+        legend_entry(pinned_label, sign, sign_room + line_room);
         ImGui::SameLine(0.0F, between);
     }
     for (const Markers& markers : events) {

@@ -142,17 +142,17 @@ std::string exported(const Session& session, const command::Export& what) {
 
 namespace {
 
-// Distinguishes the runs: the current one in ink, the others in their hues. Within a run only the dash pattern marks
-// the phase.
-void name_runs(Figure& figure, const Session& session, const std::vector<const PinnedRun*>& pinned) {
-    const Theme theme = light_theme();
+// Distinguishes the runs: the current one in ink, the others thinner in their hues. Within a run only the dash pattern
+// marks the phase, so the phases have their dashes in gray: no two signs are the same.
+void name_runs(Figure& figure, const Session& session, const std::vector<const PinnedRun*>& pinned,
+               const Theme& theme) {
     std::vector<std::string> phases;
     for (const PhaseLook look : phase_looks) phases.push_back(legend_text(look));
     for (Key& key : figure.keys)
         if (auto* const stroke = std::get_if<Stroke>(&key.sign);
             stroke != nullptr && std::any_of(phases.begin(), phases.end(),
                                              [&](const std::string& phase) { return key.label.starts_with(phase); }))
-            stroke->color = theme.ink;
+            stroke->color = theme.faint;
     const Stroke own{theme.ink, 2.0, {}};
     figure.keys.push_back({session.name_of_run().empty() ? "present run" : session.name_of_run(), own});
     for (const PinnedRun* run : pinned)
@@ -229,7 +229,7 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
                         : with_pinned(std::move(panels[i]), behind, framing, theme);
     }
     Figure figure = publication(session.trajectory(), std::move(panels), style);
-    if (!pinned.empty()) name_runs(figure, session, pinned);
+    if (!pinned.empty()) name_runs(figure, session, pinned, theme);
     if (const Proof* proof = session.proof()) name_proof(figure, *proof, theme);
     return figure;
 }

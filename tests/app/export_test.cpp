@@ -223,6 +223,29 @@ TEST(Export, IsNotDoneByAPictureThatIsReproduced) {
     EXPECT_FALSE(fs::exists(folder.path() / "run.json"));
 }
 
+// No two strokes of the legend are the same, on paper and on a dark screen: a phase is not taken for a run.
+TEST(Export, TheLegendOfPinnedRunsHasDifferentSigns) {
+    for (const bool dark : {false, true}) {
+        Session session = test::session("ball_on_sine");
+        session.apply(parse_command("pin"));
+        session.apply(parse_command("set e 0.7"));
+        PublicationStyle style;
+        style.dark = dark;
+        std::vector<Stroke> strokes;
+        for (const Key& key : figure_of(session, style).keys)
+            if (const auto* const stroke = std::get_if<Stroke>(&key.sign)) strokes.push_back(*stroke);
+        ASSERT_GE(strokes.size(), 4U);
+        const auto is_color = [](const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; };
+        for (std::size_t i = 0; i < strokes.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                EXPECT_FALSE(is_color(strokes[i].color, strokes[k].color) && strokes[i].dash == strokes[k].dash)
+                    << i << " and " << k;
+        const Stroke &own = strokes[strokes.size() - 2], &pinned = strokes.back();
+        EXPECT_TRUE(is_color(own.color, (dark ? dark_theme() : light_theme()).ink));
+        EXPECT_LT(pinned.width, own.width);
+    }
+}
+
 // With a pinned run the legend names both runs.
 TEST(Figure, NamesBothRunsByWhatDiffers) {
     const auto last_keys = [](const std::string& journal) {
