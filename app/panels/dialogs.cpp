@@ -3,7 +3,9 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "journal/link.hpp"
@@ -96,11 +98,12 @@ std::string free_name(const std::string& stem, const std::string& ending) {
     return name;
 }
 
-// A modal window in the middle of the surface.
+// A modal window. Its upper edge stays where it is when notes and fields make it higher.
 template <class Content>
 void dialog(const char* title, Content content) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({0.5F * size.x, 0.4F * size.y}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowPos(
+        {std::floor(0.5F * (size.x - std::min(units(dialog_width), size.x))), std::floor(0.12F * size.y)});
     ImGui::SetNextWindowSize({std::min(units(dialog_width), size.x), 0.0F});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(16.0F), units(14.0F)});
     if (ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {

@@ -108,7 +108,9 @@ void show_card(const Session& session, const std::string& message) {
     const Rectangle area = remaining();
     const float width = area.width - 2.0F * units(card_padding);
     const bool is_good = message == session.notice();
+    const ImVec2 low{area.x, area.y}, high{area.x + area.width, area.y + area.height};
     if (!is_good) paint_error_card(area);
+    ImGui::GetWindowDrawList()->AddRect(low, high, ImGui::GetColorU32(ImGuiCol_Border), units(4.0F));
     ImGui::SetCursorScreenPos({area.x + units(card_padding), area.y + units(card_padding)});
     ImGui::BeginGroup();
     if (is_good)
@@ -176,11 +178,17 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     state.lit = std::exchange(state.lights, {});
     state.pointed_slider.clear();
     state.pointed.is_early = false;
-    // Discard a click on a slider that is no longer shown.
+    // Discard a click on a slider or plot that is no longer shown.
+    if (ImGui::GetTime() - state.plot_click.since > 1.0) state.plot_click = {};
     if (ImGui::GetTime() - state.pressed.clicked_since > 1.0) state.pressed.clicked.clear();
     const std::string message = card_text(session);
     const Arrangement parts = arrange(session, state, message);
     state.front = parts.front, state.is_alone = parts.is_alone;
+    // In front of the panels, since its window is made before theirs: see NoBringToFrontOnFocus.
+    const bool has_message = !message.empty();
+    part("error", has_message ? parts.error : Rectangle{-2.0F, -2.0F, 1.0F, 1.0F}, still_window, [&] {
+        if (has_message) show_card(session, message);
+    });
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {units(8.0F), units(8.0F)});
     part("bar", parts.bar, still_window | ImGuiWindowFlags_MenuBar, [&] { show_bar(session, state, commands); });
     ImGui::PopStyleVar();
@@ -200,7 +208,6 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     part("title", parts.title, still_window, [&] { show_lecture_title(session); });
     part("sliders", parts.sliders, still_window, [&] { show_lecture_sliders(session, state, commands); });
     part("tabs", parts.tabs, still_window, [&] { show_panel_tabs(session, state, commands); });
-    part("error", parts.error, still_window, [&] { show_card(session, message); });
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
     part("results", parts.results, still_window, [&] { show_results(session, state, commands); });

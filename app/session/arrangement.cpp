@@ -10,7 +10,7 @@ namespace {
 // Lengths at scale 1. The minimum sizes keep panels readable.
 constexpr float margin = 10.0F, gap = 10.0F, min_controls = 240.0F, min_editor = 320.0F, min_center = 340.0F,
                 min_plots = 240.0F, min_events = 110.0F, min_study = 150.0F, min_top = 240.0F, min_picture = 90.0F,
-                min_plane = 230.0F, min_world = 90.0F, min_plot = 110.0F;
+                min_plane = 230.0F, min_world = 90.0F;
 // In a narrower window the panels are tabs.
 constexpr float min_window = 1000.0F;
 
@@ -33,13 +33,13 @@ float below(const Rectangle& part, const Measures& m) {
     return static_cast<float>(end + space);
 }
 
-// The error message and the caption of a tour, from `top` on; returns where the next part begins.
+// The caption of a tour, from `top` on; returns where the next part begins. There, in front of it, is the message: it
+// comes and goes, and nothing moves.
 float place_messages(Arrangement& parts, const Measures& m, float x, float top, float width, float bottom) {
-    parts.error = {x, top, width, std::min(m.error ? m.error(width) : 0.0F, bottom - top)};
-    const float caption_top = std::min(below(parts.error, m), bottom);
-    parts.caption = {x, caption_top, width,
-                     std::clamp(m.caption ? m.caption(width) : 0.0F, 0.0F, bottom - caption_top)};
-    return std::min(below(parts.caption, m), bottom);
+    parts.caption = {x, top, width, std::clamp(m.caption ? m.caption(width) : 0.0F, 0.0F, bottom - top)};
+    const float next = std::min(below(parts.caption, m), bottom);
+    parts.error = {x, next, width, std::min(m.error ? m.error(width) : 0.0F, bottom - next)};
+    return next;
 }
 
 // Minimum height of the mechanism's panel: numbers and heading above the axes, and the picture itself.
@@ -193,23 +193,9 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     // Beside the editor the events would be too narrow for a certificate: put them below it.
     const bool events_below = editor && low > 0.0F;
     parts.controls = {edge, top, left, events_below ? height : all};
-    // The error message is above the picture or, if that would become too low, above the plots.
-    const float lower = top + height - std::min(m.timeline, height) - between;
-    const float caption = m.caption ? m.caption(center) : 0.0F, error = m.error ? m.error(center) : 0.0F;
-    const float messages =
-        (error > 0.0F ? error + 0.6F * between : 0.0F) + (caption > 0.0F ? caption + 0.6F * between : 0.0F);
-    const float left_over = lower - top - messages - (m.results ? m.results(center) : 0.0F) - 0.4F * between;
-    const float beside = m.error && right > 0.0F ? m.error(right) : 0.0F;
-    const bool over_plots =
-        error > 0.0F && left_over < least_picture(scene, m, center) && beside > 0.0F && height - beside >= min_plot * u;
-    Measures measured = m;
-    if (over_plots) measured.error = nullptr;
-    const float picture = place_messages(parts, measured, x, top, center, top + height);
+    const float picture = place_messages(parts, m, x, top, center, top + height);
     place_mechanism(parts, scene, m, {x, picture, center, top + height - picture});
-    if (over_plots) parts.error = {x + center + between, top, right, beside};
-    const float plots_at = over_plots ? below(parts.error, m) : top;
-    const float plots_height = top + height - plots_at;
-    parts.plots = {x + center + between, plots_at, right, plots_height};
+    parts.plots = {x + center + between, top, right, height};
     const float events_x = events_below ? edge : x;
     parts.events = {events_x, top + height + between, std::max(0.0F, m.width - edge - events_x), low};
 

@@ -226,5 +226,19 @@ TEST(ExportDialog, FilmNeedsANumberOfPicturesASecond) {
     EXPECT_TRUE(hands.says("the frames per second must be above 0, not -5"));
 }
 
+// The dialog grows downward: its fields stay where they are while one types, and with other contents.
+TEST(ExportDialog, KeepsItsPlace) {
+    test::Hands hands("ball_on_sine");
+    hands.session.apply(command::Show{"export", true});
+    hands.rest(3);
+    const Rectangle before = hands.state.places.at("take what");
+    hands.state.editor.path = "/no/such/folder/a.svg";
+    hands.state.export_form.on_paper = true;
+    hands.rest(3);
+    const Rectangle after = hands.state.places.at("take what");
+    EXPECT_EQ(before.x, after.x);
+    EXPECT_EQ(before.y, after.y);
+}
+
 }  // namespace
 }  // namespace achilles
