@@ -471,10 +471,10 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
     const char* text = "link time";
     const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(text).x;
     // What the mouse does in a plot, while it is over one.
-    const char* const hint = "right drag: zoom to a box \u00b7 double click: all";
-    const float free = content_right() - width - units(16.0F) - ImGui::GetCursorPosX() - units(16.0F);
+    const char* const hint = "right drag: zoom box";
+    const float free = content_right() - width - units(8.0F) - ImGui::GetCursorPosX() - units(8.0F);
     if (ImGui::IsWindowHovered() && ImGui::CalcTextSize(hint).x <= free) {
-        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + units(16.0F));
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + units(8.0F));
         ImGui::AlignTextToFramePadding();
         ImGui::TextDisabled("%s", hint);
     }

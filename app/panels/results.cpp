@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "output/contacts.hpp"
@@ -17,7 +18,7 @@ namespace achilles {
 
 namespace {
 
-constexpr float padding = 6.0F, sign_width = 18.0F, between = 18.0F, max_of_strip = 0.6F, arrow_width = 30.0F;
+constexpr float padding = 6.0F, sign_width = 18.0F, between = 12.0F, max_of_strip = 0.6F, arrow_width = 30.0F;
 
 // Text and width of a cell. In a strip of one line the time is beside the name.
 struct ResultCell {
@@ -31,11 +32,19 @@ struct StripLayout {
 ResultCell cell_of(const Session& session, const ListedResult& result, const StripLayout& strip) {
     const Trajectory& trajectory = session.trajectory();
     const EventTime time = event_time(session, result.event);
-    ResultCell cell{result_name(trajectory, result), time.is_proved ? time.short_text : time.text(), 0.0F};
-    // Room for the time that a proof gives, so that nothing moves when it arrives.
-    const std::string widest = fmt::format("{:.{}f}(88)", trajectory.end_time, decimals_of_times(trajectory));
+    const int decimals = decimals_of_times(trajectory);
+    // A proof made by itself moves nothing: Zeno points have room for it, and other times keep their number of digits.
+    const bool is_zeno = is_zeno_point(trajectory.events[result.event]), is_asked = session.proof() != nullptr;
+    const bool is_told = time.is_proved && (is_zeno || is_asked);
+    ResultCell cell{result_name(trajectory, result), is_told ? time.short_text : time.text(), 0.0F};
+    if (time.is_proved && !is_told)
+        cell.time = fmt::format("{:.{}f}", std::strtod(time.digits.c_str(), nullptr), std::min(decimals, 9));
+    const std::string before = event_time(trajectory, result.event, session.precision().of_event(result.event)).text();
+    const std::string after =
+        is_zeno ? fmt::format("{:.{}f}(8)", trajectory.events[result.event].t, decimals) : std::string();
+    const std::string& widest = width_of(before) < width_of(after) ? after : before;
     const float reserved = width_of(strip.is_low ? cell.name + "  " + widest : widest);
-    if (time.is_proved) cell.name += ", proved";
+    if (is_told) cell.name += ", proved";
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
     // A long name leaves room for a neighbor; a time never loses its tolerance.
     cell.name = fitted(cell.name, (strip.is_low ? 1.0F : max_of_strip) * strip.room - units(sign_width));

@@ -213,9 +213,9 @@ TEST(PlotInput, TheRightButtonDrawsABoxToZoomTo) {
 // The same for a hand without a right button; the plots say what the mouse does while it is over them.
 TEST(PlotInput, ShiftDrawsABoxAndAHintSaysSo) {
     PlotHand hand;
-    EXPECT_FALSE(hand.says("zoom to a box"));
+    EXPECT_FALSE(hand.says("zoom box"));
     hand.point("plot 1", 0.25);
-    EXPECT_TRUE(hand.says("right drag: zoom to a box"));
+    EXPECT_TRUE(hand.says("right drag: zoom box"));
     const double time = hand.session.time();
     hand.hand.keys = {key::left_shift};
     hand.rest(1);
