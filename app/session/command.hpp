@@ -368,8 +368,9 @@ struct Export {
 inline const std::vector<std::string> copied_things{"data",    "events", "explorer", "figure", "link",
                                                     "picture", "plots",  "run",      "sweep"};
 struct Copy {
-    // One of copied_things. `link`: what opens this session in a browser. `explorer`, `figure`, `run`, `sweep`: the shell command that makes it. `data`: the run;
-    // `events`: the selected event, or all; `plots`: what is plotted, all as tables. `picture`: the plots.
+    // One of copied_things. `link`: what opens this session in a browser. `explorer`, `figure`, `run`, `sweep`: the
+    // shell command that makes it. `data`: the run; `events`: the selected event, or all; `plots`: what is plotted, all
+    // as tables. `picture`: the plots.
     std::string what;
     int plot = 0;  // of `plots` and `picture`: only this plot; 0: all
     static constexpr auto spec = CommandSpec(

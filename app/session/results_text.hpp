@@ -25,8 +25,9 @@ std::string result_explanation(const Session& session, std::size_t event);
 // The time of an event as it is shown everywhere: the digits that its bound supports.
 struct EventTime {
     std::string digits;  // "2.7251422", or "?"
-    // "8e-7", whole units of the last digit: digits and bound contain the proved interval or, without a proof, the certified one and the estimated
-    // integration error. Empty: no bound is known, and the digits are those that the estimate leaves.
+    // "8e-7", whole units of the last digit. Digits and bound contain the proved interval or, without a proof, the
+    // certified one and the estimated integration error. Empty: no bound is known, and the digits are those that the
+    // estimate leaves.
     std::string bound;
     std::string short_text;  // "2.7251422(8)", the same where there is little room
     bool is_proved = false;

@@ -83,6 +83,7 @@ const std::string nothing = "\u2013";
 struct RunStep {
     std::string name;
     double t = 0.0, error = 0.0;  // s
+    std::string digits;           // of t, as everywhere
 };
 
 std::vector<RunStep> steps_of(const Trajectory& run, const Precision& precision) {
@@ -92,13 +93,13 @@ std::vector<RunStep> steps_of(const Trajectory& run, const Precision& precision)
         if (!event.changes_held()) continue;
         // The digits that the bound of this time supports.
         double error = precision.of_event(i);
-        if (const EventTime time = event_time(run, i, error); !time.bound.empty())
-            error = std::max(error, std::strtod(time.bound.c_str(), nullptr));
+        const EventTime time = event_time(run, i, error);
+        if (!time.bound.empty()) error = std::max(error, std::strtod(time.bound.c_str(), nullptr));
         const std::string contacts = event_contacts_text(run, event);
         steps.push_back({event.opened.empty() || !event.is_impact()
                              ? fmt::format("{}{}{}", names_of(event).label, contacts.empty() ? "" : " ", contacts)
                              : contacts + " opens " + joined_names(*run.model, event.opened),
-                         event.t, error});
+                         event.t, error, time.digits});
     }
     return steps;
 }
@@ -133,7 +134,7 @@ std::optional<RunDivergence> divergence(const std::vector<RunStep>& present, dou
 
 class RunTableBuilder {
  public:
-    explicit RunTableBuilder(std::span<const ShownRun> runs) : digits_(runs.size() <= 3 ? 10 : 7) {
+    explicit RunTableBuilder(std::span<const ShownRun> runs) : digits_(runs.size() <= 3 ? all_digits : 7) {
         for (const ShownRun& shown : runs) {
             runs_.push_back(shown.run);
             precisions_.emplace_back(*shown.run, shown.estimate);
@@ -147,8 +148,8 @@ class RunTableBuilder {
         courses();
         std::vector<ValueWithError> impacts, ends;
         for (const Trajectory* run : runs_) {
-            impacts.push_back({static_cast<double>(run->statistics.impacts)});
-            ends.push_back({run->end_time});
+            impacts.push_back({static_cast<double>(run->statistics.impacts), 0.0, ""});
+            ends.push_back({run->end_time, 0.0, ""});
         }
         numbers("impacts", impacts);
         if (std::any_of(runs_.begin(), runs_.end(),
@@ -174,12 +175,15 @@ class RunTableBuilder {
 
     struct ValueWithError {
         double x = std::nan(""), error = 0.0;  // NaN: no value
+        std::string text;                      // used where there is room for all digits, unless empty
     };
     void numbers(const std::string& name, const std::vector<ValueWithError>& values) {
         RunTable::Row& row = table_.rows.emplace_back();
         row.name = name;
-        for (const auto& [x, error] : values) {
-            row.values.push_back(std::isfinite(x) ? value_text(x, error, digits_) : nothing);
+        for (const auto& [x, error, text] : values) {
+            row.values.push_back(!std::isfinite(x)                        ? nothing
+                                 : digits_ == all_digits && !text.empty() ? text
+                                                                          : value_text(x, error, digits_));
             row.differs.push_back(x != values[0].x && !(std::isnan(x) && std::isnan(values[0].x)));
         }
         if (values.size() == 2 && std::isfinite(values[0].x) && std::isfinite(values[1].x))
@@ -209,7 +213,7 @@ class RunTableBuilder {
             for (const RunStep& step : all[i]) {
                 auto& of_runs = times[step.name];
                 of_runs.resize(all.size());
-                of_runs[i].push_back({step.t, step.error});
+                of_runs[i].push_back({step.t, step.error, step.digits});
                 const std::pair<std::string, std::size_t> key{step.name, of_runs[i].size()};
                 const auto longest = [&] {
                     std::size_t longest_of_others = 0;
@@ -247,7 +251,7 @@ class RunTableBuilder {
                 for (std::size_t k = 0; k < runs_.size(); ++k) {
                     const State errors = precisions_[k].of_state(runs_[k]->end_time);
                     values.push_back({(is_rate ? runs_[k]->end.v : runs_[k]->end.q)[at] * factor,
-                                      (is_rate ? errors.v : errors.q)[at] * factor});
+                                      (is_rate ? errors.v : errors.q)[at] * factor, ""});
                 }
                 std::string unit = is_angle ? "\u00b0" : typeset_unit(coordinates[i].unit);
                 if (is_rate && !unit.empty()) unit += "/s";
@@ -258,6 +262,7 @@ class RunTableBuilder {
     }
 
     std::vector<const Trajectory*> runs_;
+    static constexpr int all_digits = 10;
     std::vector<Precision> precisions_;
     int digits_;
     std::vector<std::vector<RunStep>> courses_;

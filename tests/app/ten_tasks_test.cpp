@@ -13,6 +13,7 @@
 #include "model/model.hpp"
 #include "output/output.hpp"
 #include "panels/widgets.hpp"
+#include "session/results_text.hpp"
 
 namespace achilles::ten_tasks {
 namespace {
@@ -81,7 +82,7 @@ TEST(TenTasks, ThreeRestitutionsHaveTheirSecondZenoTimesInATable) {
     ASSERT_EQ(hands.session.pinned().size(), 2U);
     for (const Trajectory* run : {hands.session.pinned()[0].trajectory.get(),
                                   hands.session.pinned()[1].trajectory.get(), &hands.session.trajectory()})
-        EXPECT_TRUE(hands.says(number(run->events[second_zeno(*run)].t, "{:.10g}"))) << hands.letters();
+        EXPECT_TRUE(hands.says(event_time(*run, second_zeno(*run)).digits)) << hands.letters();
 }
 
 TEST(TenTasks, AFigureHasTheWidthOfAColumnAndLettersOf8Points) {

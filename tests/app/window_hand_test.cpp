@@ -285,6 +285,7 @@ TEST(Marks, AClickWithinEightPixelsSelectsThatEvent) {
             hands.rest(2);
             hands.hand.left = false;
             hands.rest(2);
+            hands.settle();  // it could become a double click
             EXPECT_EQ(hands.session.selected(), static_cast<int>(wanted) + 1) << plot;
         }
     // Away from all markers a click seeks.
@@ -294,18 +295,19 @@ TEST(Marks, AClickWithinEightPixelsSelectsThatEvent) {
     EXPECT_NEAR(hands.session.time(), 10.0, 0.1);
 }
 
-TEST(Marks, TheRightButtonSeeksNothingAndADoubleClickOnce) {
+TEST(Marks, NeitherTheRightButtonNorADoubleClickSeeks) {
     Hands hands("ball_on_sine");
     hands.right_click("plot 1", 0.45);
     EXPECT_EQ(hands.session.time(), 0.0);
     hands.all.clear();
     hands.double_click("plot 1", 0.45);
+    hands.settle();
     int seeks = 0, fits = 0;
     for (const Command& command : hands.all) {
         seeks += std::holds_alternative<command::Seek>(command) ? 1 : 0;
         fits += std::holds_alternative<command::Fit>(command) ? 1 : 0;
     }
-    EXPECT_EQ(seeks, 1);
+    EXPECT_EQ(seeks, 0);
     EXPECT_EQ(fits, 1);
 }
 
