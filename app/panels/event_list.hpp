@@ -1,4 +1,4 @@
-// The columns of the event list.
+// The table of the event list.
 #pragma once
 
 #include <imgui.h>
@@ -11,13 +11,6 @@
 #include "session/event_rows.hpp"
 
 namespace achilles {
-
-// Columns of the event list: a marker, a number, the time, a sentence, and right-aligned numbers.
-
-// Positions at scale 1 from the left edge of the list. Markers and words are left-aligned, numbers right-aligned.
-// Number columns are dropped before the sentence becomes too narrow.
-constexpr float sign_at = 14.0F, number_at = 62.0F, time_at = 164.0F, words_at = 180.0F, words_width = 600.0F,
-                state_width = 112.0F;
 
 // A column of the state after an event: one coordinate or its rate.
 struct StateColumn {
@@ -32,32 +25,42 @@ struct StateColumn {
 
 std::vector<StateColumn> state_columns(const Session& session);
 
-// A number or a column title that ends at x; a long title is shortened.
-void number_cell(ImVec2 at, float x, const std::string& text, const Color& color);
-// The same with aligned decimal points, in a column of numbers with at most this many decimals.
-void decimal_cell(ImVec2 at, float x, const std::string& text, int decimals, const Color& color);
-
-// The columns at the right end of the list: the energy loss, the held contacts if there are several contacts, and as
-// many coordinates and rates as fit. Beside a card the list has only the time column.
-class EventColumns {
+// The table of the event list, open while this exists: a marker, a number, the time, and a sentence; then the energy
+// loss, the held contacts if there are several contacts, and as many coordinates and rates as the sentence leaves room
+// for. A right click on a title hides columns. Beside a card (not `is_alone`) it ends with the sentence.
+class EventTable {
  public:
-    EventColumns(const Session& session, float width, bool is_alone);
-    float words() const;  // width of the sentence, pixels
-    void put_words(ImVec2 at, const std::string& text, const Color& color) const;
-    void titles(const Session& session, ImVec2 at) const;
-    // Writes the numbers of an event. For consecutive impacts `event` is null, and only their energy loss is written.
-    void row(const Session& session, const Event* event, double lost, ImVec2 at, const Color& color) const;
+    EventTable(const Session& session, const ImVec2& size, bool is_alone);
+    ~EventTable();
+    EventTable(const EventTable&) = delete;
+    EventTable& operator=(const EventTable&) = delete;
+
+    bool is_open() const { return is_open_; }  // false: nothing of it is seen, and it can have no rows
+    // The menu that a right click on a title opens.
+    void choose_columns(PanelState& state) const;
+    // Begins a row; true if it is clicked.
+    bool row(bool is_marked) const;
+    Point sign() const;  // the middle of the first column
+    void number(std::size_t number) const;
+    void time(const std::string& digits, const Color& color) const;
+    void words(const std::string& text, const Color& color) const;
+    // The numbers at the right. For consecutive impacts `event` is null, and only their energy loss is written.
+    void values(const Event* event, double lost, const Color& color) const;
 
  private:
+    enum Column { sign_column, number_column, time_column, words_column, first_value };
+    void title(int column, const std::string& text) const;
+    // Right-aligned; with `decimals` their points are aligned.
+    void put(int column, const std::string& text, const Color& color, int decimals = 0) const;
     bool is_held(std::size_t i) const { return is_of_several_ && i == 1; }
-    const StateColumn& state(std::size_t i) const { return states_[i - (is_of_several_ ? 2 : 1)]; }
-    static constexpr int loss_decimals = 4, state_decimals = 5;
-    void put(ImVec2 at, std::size_t i, const std::string& text, const Color& color, int decimals = 0) const;
+    static int column_of(std::size_t i) { return first_value + static_cast<int>(i); }
+    const StateColumn& state_of(std::size_t i) const { return states_[i - (is_of_several_ ? 2 : 1)]; }
 
+    const Session& session_;
     std::vector<StateColumn> states_;
-    float width_;
     bool is_of_several_;
-    std::size_t shown_ = 0;
+    std::size_t values_ = 0;  // columns after the sentence
+    bool is_open_ = false;
 };
 
 }  // namespace achilles

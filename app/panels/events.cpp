@@ -102,13 +102,6 @@ void show_comparing(float x, const Session& session, PanelState& state, Commands
     tooltip("keep the present run in the plots, to compare with later ones");
 }
 
-void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
-    number_cell(at, number_at, "#", faint_color());
-    number_cell(at, time_at, "t (s)", faint_color());
-    columns.put_words(at, "event", faint_color());
-    columns.titles(session, at);
-}
-
 void show_header(const Session& session, PanelState& state, Commands& commands) {
     const float right = content_right();
     const float width =
@@ -135,56 +128,50 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     show_comparing(buttons, session, state, commands);
 }
 
-void time_cell(ImVec2 at, const Session& session, const std::string& digits, const Color& color) {
-    decimal_cell(at, time_at, digits, decimals_of_times(session.trajectory()), color);
-}
-
-void paint_event(const Session& session, std::size_t index, ImVec2 at, const EventColumns& columns) {
+void show_event(const Session& session, std::size_t index, int present, const EventTable& table, PanelState& state,
+                Commands& commands) {
+    const int event_number = static_cast<int>(index) + 1;
+    const bool is_selected =
+        session.selected() == event_number || (session.selected() == 0 && present == static_cast<int>(index));
+    // A second click on the selected event deselects it.
+    if (table.row(is_selected))
+        commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
+    remember(state, "event " + std::to_string(event_number));
     const Event& event = session.trajectory().events[index];
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const Markers markers = event_markers(session.theme(), event.kind);
-    paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
-    number_cell(at, number_at, std::to_string(index + 1), faint_color());
-    time_cell(at, session, event_time(session, index).digits, text_color());
+    paint_marker(ImGui::GetWindowDrawList(), event_markers(session.theme(), event.kind), table.sign(), units(1.0F));
+    table.number(index + 1);
+    table.time(event_time(session, index).digits, text_color());
     // Beside a card, which has the details, only the name.
     const std::string name =
         has_card(session) ? event_name(session, event) : typeset_sentence(session.sentences().of(index));
     const std::string proved = has_card(session) || session.enclosed(index) == nullptr ? "" : "proved · ";
-    columns.put_words(at, proved + name, text_color());
+    table.words(proved + name, text_color());
     // At a Zeno point the loss of its whole impact sequence, as in the sentence.
     const double lost = is_zeno_point(event) ? bounce_sequence_of(session.trajectory(), index).loss
                                              : energy_lost(session.trajectory(), index);
-    columns.row(session, &event, lost, at, text_color());
+    table.values(&event, lost, text_color());
+}
+
+// The triangle of a folded or unfolded row.
+void paint_fold(const Point& center, bool is_open) {
+    const auto at = [&](float x, float y) {
+        return ImVec2{static_cast<float>(center.x) + units(4.0F) * x, static_cast<float>(center.y) + units(4.0F) * y};
+    };
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (is_open)
+        list->AddTriangleFilled(at(-1.0F, -0.6F), at(1.0F, -0.6F), at(0.0F, 1.0F), packed(faint_color()));
+    else
+        list->AddTriangleFilled(at(-0.6F, -1.0F), at(-0.6F, 1.0F), at(1.0F, 0.0F), packed(faint_color()));
 }
 
 // A folded row: "10 impacts", the time of the first, and their energy loss; in a faint color.
-void paint_impacts(const Session& session, const EventRows::EventRow& row, ImVec2 at, const EventColumns& columns) {
-    const auto& events = session.trajectory().events;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 c{at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()};
-    const float r = units(4.0F);
-    if (row.is_open)
-        list->AddTriangleFilled({c.x - r, c.y - 0.6F * r}, {c.x + r, c.y - 0.6F * r}, {c.x, c.y + r},
-                                packed(faint_color()));
-    else
-        list->AddTriangleFilled({c.x - 0.6F * r, c.y - r}, {c.x - 0.6F * r, c.y + r}, {c.x + r, c.y},
-                                packed(faint_color()));
-    const auto end = events.begin() + static_cast<std::ptrdiff_t>(row.event + row.count);
-    const bool any_turn = std::any_of(events.begin() + static_cast<std::ptrdiff_t>(row.event), end,
-                                      [](const Event& event) { return !event.is_impact(); });
-    const double lost = events[row.event + row.count - 1].loss - (row.event > 0 ? events[row.event - 1].loss : 0.0);
-    columns.put_words(at, fmt::format("{} {}", row.count, any_turn ? "events" : "impacts"), text_color());
-    time_cell(at, session, event_time(session, row.event).digits, faint_color());
-    columns.row(session, nullptr, lost, at, faint_color());
-}
-
-void show_impacts(const Session& session, const EventRows::EventRow& row, int present, const EventColumns& columns,
+void show_impacts(const Session& session, const EventRows::EventRow& row, int present, const EventTable& table,
                   PanelState& state, Commands& commands) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const auto& events = session.trajectory().events;
     const std::size_t last = row.event + row.count - 1;
     const bool is_reached = !row.is_open && session.selected() == 0 && present >= static_cast<int>(row.event) &&
                             present <= static_cast<int>(last);
-    if (ImGui::Selectable("##row", is_reached)) {
+    if (table.row(is_reached)) {
         const int chosen = session.selected() - 1;
         if (!row.is_open)
             state.unfolded.insert(row.event);
@@ -197,37 +184,28 @@ void show_impacts(const Session& session, const EventRows::EventRow& row, int pr
     const auto time = [&](std::size_t i) { return event_time(session, i).digits; };
     tooltip(fmt::format("events {} to {}, t = {} to {} s: click to {} them", row.event + 1, last + 1, time(row.event),
                         time(last), row.is_open ? "collapse" : "list"));
-    paint_impacts(session, row, at, columns);
-}
-
-void show_event(const Session& session, std::size_t event, int present, const EventColumns& columns, PanelState& state,
-                Commands& commands) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const int event_number = static_cast<int>(event) + 1;
-    const bool is_selected =
-        session.selected() == event_number || (session.selected() == 0 && present == static_cast<int>(event));
-    // A second click on the selected event deselects it.
-    if (ImGui::Selectable("##row", is_selected))
-        commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
-    remember(state, "event " + std::to_string(event_number));
-    paint_event(session, event, at, columns);
+    paint_fold(table.sign(), row.is_open);
+    const bool any_turn = std::any_of(events.begin() + static_cast<std::ptrdiff_t>(row.event),
+                                      events.begin() + static_cast<std::ptrdiff_t>(row.event + row.count),
+                                      [](const Event& event) { return !event.is_impact(); });
+    table.time(time(row.event), faint_color());
+    table.words(fmt::format("{} {}", row.count, any_turn ? "events" : "impacts"), text_color());
+    table.values(nullptr, events[last].loss - (row.event > 0 ? events[row.event - 1].loss : 0.0), faint_color());
 }
 
 // The row of the start or the end of the run; a click goes there.
-void show_end(const Session& session, bool is_start, const EventColumns& columns, PanelState& state,
-              Commands& commands) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
+void show_end(const Session& session, bool is_start, const EventTable& table, PanelState& state, Commands& commands) {
     const double t = is_start ? session.trajectory().run.options.start_time : session.trajectory().end_time;
     const bool is_present = session.selected() == 0 && session.time() == t;
-    if (ImGui::Selectable("##row", is_present)) move_time(session, t, commands);
+    if (table.row(is_present)) move_time(session, t, commands);
     remember(state, is_start ? "event start" : "event end");
-    if (!is_start && session.shows_start()) return columns.put_words(at, "still under way", faint_color());
-    time_cell(at, session, number_with_decimals(t, 0.0, 9), faint_color());
+    if (!is_start && session.shows_start()) return table.words("still under way", faint_color());
+    table.time(number_with_decimals(t, 0.0, 9), faint_color());
     // The time is in its own column.
     std::string text = is_start ? session.sentences().start() : session.sentences().end();
     const std::size_t colon = text.find(": ");
     text = (is_start ? "start" : "end") + (has_card(session) ? "" : text.substr(colon));
-    columns.put_words(at, typeset_sentence(text), faint_color());
+    table.words(typeset_sentence(text), faint_color());
 }
 
 // Scrolls to the row of the current event when it changes.
@@ -237,7 +215,7 @@ void follow(const EventRows& all, int event, PanelState& state) {
     // Row 0 is the start, which is shown before the first event.
     const std::size_t row = event < 0 ? 0 : all.row_of(static_cast<std::size_t>(event)) + 1;
     const float y = static_cast<float>(row) * ImGui::GetTextLineHeightWithSpacing();
-    const float height = ImGui::GetWindowHeight(), line = ImGui::GetTextLineHeightWithSpacing();
+    const float line = ImGui::GetTextLineHeightWithSpacing(), height = ImGui::GetWindowHeight() - line;  // below titles
     // Scroll by whole lines.
     if (y < ImGui::GetScrollY() || y + 3.0F * line > ImGui::GetScrollY() + height)
         ImGui::SetScrollY(std::max(0.0F, std::floor((y - 0.3F * height) / line) * line));
@@ -245,42 +223,34 @@ void follow(const EventRows& all, int event, PanelState& state) {
 
 void show_list(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
     begin_padded_child("list", size);
-    // Width of the rows beside the scroll bar.
-    const EventColumns columns(session, ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize,
-                               !has_card(session));
-    paint_titles(session, ImGui::GetCursorScreenPos(), columns);
-    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + units(words_at));
-    ImGui::Dummy({units(state_width), ImGui::GetTextLineHeight()});
-    if (!has_card(session)) tooltip(precision_text());
     const float line = ImGui::GetTextLineHeightWithSpacing();  // height of whole rows
-    const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
-    ImGui::BeginChild("rows", {0.0F, room}, false);
+    const ImVec2 room{0.0F, std::max(2.0F * line, std::floor(ImGui::GetContentRegionAvail().y / line) * line)};
     const EventRows all(session, state.show_impacts, state.unfolded);
     const int present = reached(session), seen = session.selected() > 0 ? session.selected() - 1 : present;
     // At the end of the run its last row is highlighted instead of an event.
     const bool is_over = session.selected() == 0 && session.time() >= session.trajectory().end_time;
-    // Aligns the highlight of the first row with those of the others.
-    ImGui::SetCursorPosY(std::floor(0.5F * ImGui::GetStyle().ItemSpacing.y));
-    follow(all, seen, state);
-    ImGuiListClipper clipper;
-    const int rows = static_cast<int>(all.size()) + 2;
-    clipper.Begin(rows, ImGui::GetTextLineHeightWithSpacing());
-    while (clipper.Step())
-        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            ImGui::PushID(i);  // not its address, which may belong to another row in the next frame
-            if (i == 0 || i == rows - 1) {
-                show_end(session, i == 0, columns, state, commands);
-            } else {
-                const EventRows::EventRow row = all.at(static_cast<std::size_t>(i - 1));
-                const int reached = is_over ? -1 : present;
-                if (row.count > 0)
-                    show_impacts(session, row, reached, columns, state, commands);
-                else
-                    show_event(session, row.event, reached, columns, state, commands);
+    if (const EventTable table(session, room, !has_card(session)); table.is_open()) {
+        table.choose_columns(state);
+        follow(all, seen, state);
+        ImGuiListClipper clipper;
+        const int rows = static_cast<int>(all.size()) + 2;
+        clipper.Begin(rows, line);
+        while (clipper.Step())
+            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+                ImGui::PushID(i);  // not its address, which may belong to another row in the next frame
+                if (i == 0 || i == rows - 1) {
+                    show_end(session, i == 0, table, state, commands);
+                } else {
+                    const EventRows::EventRow row = all.at(static_cast<std::size_t>(i - 1));
+                    const int reached = is_over ? -1 : present;
+                    if (row.count > 0)
+                        show_impacts(session, row, reached, table, state, commands);
+                    else
+                        show_event(session, row.event, reached, table, state, commands);
+                }
+                ImGui::PopID();
             }
-            ImGui::PopID();
-        }
-    ImGui::EndChild();
+    }
     ImGui::EndChild();
 }
 
@@ -333,63 +303,131 @@ std::vector<StateColumn> state_columns(const Session& session) {
     return columns;
 }
 
-void number_cell(ImVec2 at, float x, const std::string& text, const Color& color) {
-    const float room = units(state_width - 8.0F), width = std::min(label_width(text, ImGui::GetFontSize()), room);
-    cell({std::floor(at.x + units(x) - width), at.y}, text, width + 0.5F, color);
+EventTable::EventTable(const Session& session, const ImVec2& size, bool is_alone)
+    : session_(session), states_(state_columns(session)), is_of_several_(session.model()->contacts() > 1) {
+    // Widths at scale 1. The sentence has the rest, and at least this much before values are shown.
+    constexpr float sign_width = 28.0F, number_width = 34.0F, time_width = 130.0F, words_width = 600.0F,
+                    column_width = 112.0F;
+    const float before = sign_width + number_width + time_width + words_width;
+    const float rest = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize - units(before);
+    const auto fitting = static_cast<std::size_t>(std::max(0.0F, rest / units(column_width)));
+    values_ = is_alone ? std::min(fitting, 1 + (is_of_several_ ? 1 : 0) + states_.size()) : 0;
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {0.0F, std::floor(0.5F * ImGui::GetStyle().ItemSpacing.y)});
+    // Another scale has other widths, and another system other columns.
+    ImGui::PushID(fmt::format("{} {}", session.system(), units(1.0F)).c_str());
+    is_open_ = ImGui::BeginTable("events", first_value + static_cast<int>(values_),
+                                 ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_Hideable |
+                                     ImGuiTableFlags_NoBordersInBody | ImGuiTableFlags_NoSavedSettings,
+                                 size);
+    if (!is_open_) return;
+    ImGui::TableSetupScrollFreeze(0, 1);
+    for (const float width : {sign_width, number_width, time_width})
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, units(width));
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+    for (std::size_t i = 0; i < values_; ++i)
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, units(column_width));
+    ImGui::TableNextRow(ImGuiTableRowFlags_None, ImGui::GetTextLineHeightWithSpacing());
+    title(number_column, "#"), title(time_column, "t (s)"), title(words_column, "event");
+    if (is_alone) tooltip(precision_text());
+    const std::string unit = typeset_unit(session.sentences().energy_unit());
+    for (std::size_t i = 0; i < values_; ++i)
+        title(column_of(i), i == 0 ? with_unit("energy lost", unit) : is_held(i) ? "held" : state_of(i).title);
 }
 
-void decimal_cell(ImVec2 at, float x, const std::string& text, int decimals, const Color& color) {
+EventTable::~EventTable() {
+    if (is_open_) ImGui::EndTable();
+    ImGui::PopID();
+    ImGui::PopStyleVar();
+}
+
+void EventTable::title(int column, const std::string& text) const {
+    if (!ImGui::TableSetColumnIndex(column)) return;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 size{std::max(1.0F, ImGui::GetContentRegionAvail().x), ImGui::GetTextLineHeight()};
+    ImGui::InvisibleButton(("##title" + std::to_string(column)).c_str(), size);
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) ImGui::OpenPopup("columns");
+    if (column >= first_value) tooltip("right click: hide and show columns");
+    ImGui::SetCursorScreenPos(at);
+    if (column == words_column)
+        words(text, faint_color());
+    else
+        put(column, text, faint_color());
+}
+
+void EventTable::choose_columns(PanelState& state) const {
+    std::vector<bool> shown;
+    for (std::size_t i = 0; i < values_; ++i)
+        shown.push_back((ImGui::TableGetColumnFlags(column_of(i)) & ImGuiTableColumnFlags_IsEnabled) != 0);
+    if (!ImGui::BeginPopup("columns")) return;
+    close_by_escape(state);
+    std::optional<std::size_t> chosen;
+    for (std::size_t i = 0; i < values_; ++i) {
+        const std::string name = i == 0 ? "energy lost" : is_held(i) ? "held" : state_of(i).name;
+        if (ImGui::MenuItem(name.c_str(), nullptr, shown[i])) chosen = i;
+        remember(state, "column " + name);
+    }
+    ImGui::EndPopup();
+    if (chosen) ImGui::TableSetColumnEnabled(column_of(*chosen), !shown[*chosen]);
+}
+
+bool EventTable::row(bool is_marked) const {
+    ImGui::TableNextRow(ImGuiTableRowFlags_None, ImGui::GetTextLineHeightWithSpacing());
+    ImGui::TableSetColumnIndex(sign_column);
+    return ImGui::Selectable("##row", is_marked, ImGuiSelectableFlags_SpanAllColumns);
+}
+
+Point EventTable::sign() const {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    return {double{low.x + units(14.0F)}, 0.5 * double{low.y + high.y}};
+}
+
+void EventTable::put(int column, const std::string& text, const Color& color, int decimals) const {
+    if (!ImGui::TableSetColumnIndex(column)) return;
+    const float font = ImGui::GetFontSize(), margin = units(column == time_column     ? 16.0F
+                                                            : column == number_column ? 0.0F
+                                                                                      : 8.0F);
     const std::size_t point = text.find('.'), behind = point == std::string::npos ? 0 : text.size() - point - 1;
     const bool is_plain = text.find_first_not_of("\u22120123456789.") == std::string::npos;
-    const std::string missing = is_plain && behind < static_cast<std::size_t>(decimals)
-                                    ? (behind == 0 ? "." : "") + std::string(decimals - behind, '0')
-                                    : "";
-    number_cell({at.x - label_width(missing, ImGui::GetFontSize()), at.y}, x, text, color);
+    const std::string missing =
+        is_plain && behind < static_cast<std::size_t>(decimals)
+            ? (behind == 0 ? "." : "") + std::string(static_cast<std::size_t>(decimals) - behind, '0')
+            : "";
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float room = ImGui::GetContentRegionAvail().x - margin, width = std::min(label_width(text, font), room);
+    cell({std::floor(at.x + room - width - label_width(missing, font)), at.y}, text, width + 0.5F, color);
 }
 
-EventColumns::EventColumns(const Session& session, float width, bool is_alone)
-    : states_(state_columns(session)), width_(width), is_of_several_(session.model()->contacts() > 1) {
-    const float room = width - units(words_at + words_width);
-    const auto fitting = static_cast<std::size_t>(std::max(0.0F, room / units(state_width)));
-    shown_ = is_alone ? std::min(fitting, 1 + (is_of_several_ ? 1 : 0) + states_.size()) : 0;
+void EventTable::number(std::size_t number) const { put(number_column, std::to_string(number), faint_color()); }
+
+void EventTable::time(const std::string& digits, const Color& color) const {
+    put(time_column, digits, color, decimals_of_times(session_.trajectory()));
 }
 
-float EventColumns::words() const {
-    return width_ - units(words_at + 8.0F) - units(state_width) * static_cast<float>(shown_);
+void EventTable::words(const std::string& text, const Color& color) const {
+    if (!ImGui::TableSetColumnIndex(words_column)) return;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    cell({std::floor(at.x), at.y}, text, ImGui::GetContentRegionAvail().x - units(8.0F), color);
 }
 
-void EventColumns::put_words(ImVec2 at, const std::string& text, const Color& color) const {
-    cell({std::floor(at.x + units(words_at)), at.y}, text, words(), color);
-}
-
-void EventColumns::put(ImVec2 at, std::size_t i, const std::string& text, const Color& color, int decimals) const {
-    const float end = width_ - units(8.0F) - units(state_width) * static_cast<float>(shown_ - 1 - i);
-    decimal_cell(at, end / units(1.0F), text, decimals, color);
-}
-
-void EventColumns::titles(const Session& session, ImVec2 at) const {
-    const std::string unit = typeset_unit(session.sentences().energy_unit());
-    for (std::size_t i = 0; i < shown_; ++i)
-        put(at, i, i == 0 ? with_unit("energy lost", unit) : is_held(i) ? "held" : state(i).title, faint_color());
-}
-
-void EventColumns::row(const Session& session, const Event* event, double lost, ImVec2 at, const Color& color) const {
+void EventTable::values(const Event* event, double lost, const Color& color) const {
+    constexpr int loss_decimals = 4, state_decimals = 5;
+    if (values_ == 0) return;
     // A smaller loss is rounding.
-    const double size = 10.0 * std::max(std::abs(session.trajectory().loss), session.sentences().energy_scale());
-    const double shown_loss = flush_noise_to_zero(lost, size);
-    const Precision& precision = session.precision();
-    if (shown_ > 0 && shown_loss != 0.0)
-        put(at, 0,
-            number_of_size(shown_loss, std::abs(session.trajectory().loss), loss_decimals,
-                           event == nullptr ? 0.0 : precision.of_energy(sample_at(session.trajectory(), *event))),
+    const double whole = std::abs(session_.trajectory().loss);
+    const double shown = flush_noise_to_zero(lost, 10.0 * std::max(whole, session_.sentences().energy_scale()));
+    const Precision& precision = session_.precision();
+    if (shown != 0.0)
+        put(first_value,
+            number_of_size(shown, whole, loss_decimals,
+                           event == nullptr ? 0.0 : precision.of_energy(sample_at(session_.trajectory(), *event))),
             color, loss_decimals);
     if (event == nullptr) return;
     const State errors = precision.of_state(event->t);
-    for (std::size_t i = 1; i < shown_; ++i)
-        put(at, i,
-            is_held(i) ? joined_names(*session.model(), event->mode.held())
-                       : number_of_size(state(i).of(*event), state(i).size(session.scale()), state_decimals,
-                                        state(i).error(errors)),
+    for (std::size_t i = 1; i < values_; ++i)
+        put(column_of(i),
+            is_held(i) ? joined_names(*session_.model(), event->mode.held())
+                       : number_of_size(state_of(i).of(*event), state_of(i).size(session_.scale()), state_decimals,
+                                        state_of(i).error(errors)),
             color, is_held(i) ? 0 : state_decimals);
 }
 

@@ -229,6 +229,33 @@ TEST(EventList, FoldsImpactsUntilAClickOpensThem) {
     EXPECT_TRUE(hands.state.places.contains("event 1"));
 }
 
+// A right click on a title hides columns and shows them again.
+TEST(EventList, HidesAColumn) {
+    Hands hands("ball_on_sine", test::surface(1600, 1000));
+    hands.session.apply(command::Seek{20.0});
+    hands.rest(2);
+    ASSERT_TRUE(hands.says("energy lost"));
+    const Rectangle first = hands.state.places.at("event start");
+    const auto use_menu = [&] {
+        hands.hand.mouse_x = first.x + 0.98 * first.width, hands.hand.mouse_y = first.y - 0.5 * first.height;
+        hands.rest(2);
+        hands.hand.right = true;
+        hands.rest(2);
+        hands.hand.right = false;
+        hands.rest(2);
+        hands.click("column energy lost");
+    };
+    use_menu();
+    EXPECT_FALSE(hands.says("energy lost"));
+    EXPECT_EQ(hands.session.time(), 20.0) << "no row was clicked";
+    hands.session.apply(command::Select{10});
+    hands.session.apply(command::Select{0});
+    hands.rest(2);
+    EXPECT_FALSE(hands.says("energy lost"));
+    use_menu();
+    EXPECT_TRUE(hands.says("energy lost"));
+}
+
 TEST(EventList, ShowsEveryImpactWhereThereIsNothingElse) {
     Hands hands("ball_on_floor");
     EXPECT_FALSE(hands.state.places.contains("event 1"));
