@@ -229,7 +229,7 @@ void ExecutionAutomaton::record_collapse_at_tie(ContactSet pair, std::shared_ptr
 }
 
 // The end of a collapse: the accelerations decide by complementarity which contacts stay.
-void ExecutionAutomaton::pass_collapse(Event event) {
+void ExecutionAutomaton::pass_collapse(Event&& event) {
     const ContactSet pair = event.contacts;
     if (surfaces_->has_friction())
         decide_with_friction(next_.held(), next_.mode);
@@ -242,7 +242,7 @@ void ExecutionAutomaton::pass_collapse(Event event) {
     begin_stretch(next_.mode, run_.options.end_time);
 }
 
-void ExecutionAutomaton::finish_collapse(Event event, ContactSet held, Mode resting) {
+void ExecutionAutomaton::finish_collapse(Event&& event, ContactSet held, Mode resting) {
     event.opened = event.contacts.without(held.with(next_.touching));
     event.mode = resting;
     record_.event(std::move(event));

@@ -57,6 +57,7 @@ ContactCache::ContactCache(const Model& model, const Run& run)
     : model_(&model), run_(run), restitutions_(model.restitutions(run.parameters)) {
     free_.reserve(model.contacts());
     for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
+    if (!model.has_friction()) return;
     const Layout& layout = model.layout();
     std::vector<std::uint32_t> state{layout.t(), layout.sliding_speed()};
     for (std::uint32_t i = 0; i < layout.dof; ++i) state.insert(state.end(), {layout.q(i), layout.v(i)});
@@ -294,10 +295,9 @@ double size_of(ContactKinematics& surface, const State& start) {
 
 }  // namespace
 
-GapUnits::GapUnits(const Model& model, const Run& run)
-    : units_(model.contacts(), 1.0), guard_units_(model.watched_guards().size(), 1.0) {
+GapUnits::GapUnits(const Model& model, const Run& run, ContactCache& surfaces)
+    : surfaces_(&surfaces), units_(model.contacts(), 1.0), guard_units_(model.watched_guards().size(), 1.0) {
     if (!guard_units_.empty()) guard_slopes_ = model.evaluator(model.guard_slopes(), run.parameters);
-    for (std::size_t i = 0; i < model.contacts(); ++i) surfaces_.emplace_back(model, run, i);
     find(run.start());
 }
 
@@ -308,7 +308,7 @@ void GapUnits::find(const State& state) {
         return is_usable ? std::exp2(step * std::round(std::log2(size) / step)) : 1.0;
     };
     place_ = state.q;
-    for (std::size_t i = 0; i < surfaces_.size(); ++i) units_[i] = unit_of(size_of(surfaces_[i], state));
+    for (std::size_t i = 0; i < units_.size(); ++i) units_[i] = unit_of(size_of(surfaces_->of(i), state));
     if (!guard_slopes_) return;
     set_state(*guard_slopes_, state);
     guard_slopes_->run();

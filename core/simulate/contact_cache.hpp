@@ -68,6 +68,8 @@ class ContactCache {
     ContactCache(const Model& model, const Run& run);
 
     std::size_t count() const { return free_.size(); }
+    // The run, for all that belong to it and do not outlive this.
+    const Run& run() const { return run_; }
     const Restitution& restitution(std::size_t contact) const { return restitutions_[contact]; }
     // Takes the restitutions of another run, whose other parameters must be the same.
     void bounce_as(const Run& run) { restitutions_ = model_->restitutions(run.parameters); }
@@ -155,7 +157,8 @@ class ContactCache {
 // no result depends on the unit of a gap.
 class GapUnits {
  public:
-    GapUnits(const Model& model, const Run& run);
+    // `surfaces` of this run; it must outlive this.
+    GapUnits(const Model& model, const Run& run, ContactCache& surfaces);
     // The units at a state. They are recomputed if a coordinate has changed by more than 1, for gaps such as exp(x) y.
     const std::vector<double>& at(const State& state);
     double operator[](std::size_t contact) const { return units_[contact]; }
@@ -167,7 +170,7 @@ class GapUnits {
  private:
     void find(const State& state);
 
-    std::vector<ContactKinematics> surfaces_;
+    ContactCache* surfaces_;
     Vector place_;
     std::vector<double> units_, guard_units_;
     std::optional<Evaluator<double>> guard_slopes_;

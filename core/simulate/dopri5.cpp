@@ -121,15 +121,15 @@ struct EventRate {
 
 class Dopri5 : public Stepper {
  public:
-    Dopri5(const Model& model, const Run& run)
+    Dopri5(const Model& model, const Run& run, ContactCache& surfaces)
         : dof_(static_cast<std::size_t>(model.dof())),
           tolerance_(run.options.tolerance),
           method_(ErrorChecker(tolerance_)),
           model_(&model),
-          parameters_(run.parameters),
+          parameters_(surfaces.run().parameters),
           coordinates_(dof_),
           contacts_(model.contacts()),
-          units_(model, run) {}
+          units_(model, run, surfaces) {}
 
     void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
@@ -168,7 +168,7 @@ class Dopri5 : public Stepper {
     double tolerance_;
     ControlledDopri5 method_;
     const Model* model_;
-    std::vector<double> parameters_;
+    std::span<const double> parameters_;
     Mode mode_;
     Model::MotionEvaluators motions_;                   // by mode, created at first use
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // the entry of mode_
@@ -417,8 +417,8 @@ void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_dopri5(const Model& model, const Run& run) {
-    return std::make_unique<Dopri5>(model, run);
+std::unique_ptr<Stepper> make_dopri5(const Model& model, const Run& run, ContactCache& surfaces) {
+    return std::make_unique<Dopri5>(model, run, surfaces);
 }
 
 }  // namespace achilles

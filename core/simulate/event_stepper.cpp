@@ -6,9 +6,8 @@ namespace achilles {
 
 EventStepper::EventStepper(const Model& model, const Run& run, ContactCache& surfaces)
     : model_(&model),
-      run_(run),
       surfaces_(&surfaces),
-      usual_(model, run),
+      usual_(model, run, surfaces),
       gaps_(surfaces.count()),
       along_(surfaces.count()),
       at_end_(surfaces.count()) {
@@ -24,9 +23,9 @@ constexpr std::uint64_t bit(std::size_t event) { return std::uint64_t{1} << even
 const StepResult& EventStepper::step(const StepRequest& request) {
     request_ = &request;
     if (request.exactly && !exact_) {
-        Run exact = run_;
+        Run exact = surfaces_->run();
         exact.options.tolerance = exact_tolerance;
-        exact_ = std::make_unique<Flow>(*model_, exact);
+        exact_ = std::make_unique<Flow>(*model_, exact, *surfaces_);
     }
     flow_ = request.exactly ? exact_.get() : &usual_;
     if (request.begins) {
@@ -146,7 +145,7 @@ StepResult::StepOutcome EventStepper::end_without_event() {
 }
 
 // Whether the segment's start is as accurate as possible, because the run uses exact_tolerance or less.
-bool EventStepper::has_exact_start() const { return run_.options.tolerance <= exact_tolerance; }
+bool EventStepper::has_exact_start() const { return surfaces_->run().options.tolerance <= exact_tolerance; }
 
 // Whether the step reaches the time `until`.
 bool EventStepper::is_last() const { return flow_->end_time() >= request_->until; }

@@ -162,7 +162,6 @@ class EventStepper {
     const EventStart& start_of(std::size_t contact) const { return request_->starts[contact]; }
 
     const Model* model_;
-    Run run_;
     ContactCache* surfaces_;
     Flow usual_;                   // at the tolerance of the run
     std::unique_ptr<Flow> exact_;  // at exact_tolerance; created at first use

@@ -201,8 +201,8 @@ class ExecutionAutomaton {
     void continue_to_collapse(const CollapsingPair& pair, const State& after, const State& restart,
                               PairCompletion completion, std::shared_ptr<const CollapseInfo> info);
     void record_collapse_at_tie(ContactSet pair, std::shared_ptr<const CollapseInfo> info);
-    void pass_collapse(Event event);
-    void finish_collapse(Event event, ContactSet held, Mode resting);
+    void pass_collapse(Event&& event);
+    void finish_collapse(Event&& event, ContactSet held, Mode resting);
     void stop_at_collapse(ContactSet pair);
     std::string collapse_failure_text() const;
     // ---- friction (friction.cpp, friction_impact.cpp, friction_completion.cpp) ----

@@ -7,11 +7,12 @@
 
 namespace achilles {
 
-Flow::Flow(const Model& model, const Run& run)
-    : stepper_(run.options.method == Method::taylor ? make_taylor(model, run) : make_dopri5(model, run)),
+Flow::Flow(const Model& model, const Run& run, ContactCache& surfaces)
+    : stepper_(run.options.method == Method::taylor ? make_taylor(model, run, surfaces)
+                                                    : make_dopri5(model, run, surfaces)),
       edges_(model.edges().empty() ? nullptr : std::make_unique<DomainMonitor>(model, run)),
       model_(&model),
-      parameters_(run.parameters) {}
+      parameters_(surfaces.run().parameters) {}
 
 void Flow::start(Mode mode, const State& state, std::span<const Gap> gaps, double first_step) {
     mode_ = mode;
@@ -109,8 +110,9 @@ WorkIntegrator::WorkIntegrator(const Model& model, const Run& run)
     : any_(model.equations().has_power() || model.has_friction()),
       dof_(model.dof()),
       accurate_(model.has_friction() ? std::max(0x1p-42, run.options.tolerance / 2.0) : 0x1p-42),
-      model_(&model),
-      parameters_(run.parameters) {}
+      model_(&model) {
+    if (any_) parameters_ = run.parameters;
+}
 
 EnergyFlow WorkIntegrator::along(const DenseSegment& piece, std::span<const double> coefficients, double to) {
     if (!any_ || !(to > piece.start)) return {};
@@ -133,7 +135,7 @@ std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& pow
     // Terms decrease at least by half, so those left out are below a fifteenth of the last four.
     constexpr double rounding = 0x1p-53;
     const double span = piece.end - piece.start, theta = std::min(1.0, (to - piece.start) / span);
-    constexpr std::array<double, 2 * max_coordinates> zeros{};
+    static constexpr std::array<double, 2 * max_coordinates> zeros{};
     const std::size_t width = 2 * static_cast<std::size_t>(dof_), outputs = model_->has_friction() ? 2 : 1;
     const double* order = coefficients.data() + piece.first;
     power.begin(order, piece.start, span);

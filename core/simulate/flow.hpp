@@ -17,7 +17,7 @@ namespace achilles {
 
 class Flow {
  public:
-    Flow(const Model& model, const Run& run);
+    Flow(const Model& model, const Run& run, ContactCache& surfaces);
 
     // Starts a segment at this state in this mode. In free flight the first step is at most `first_step` (s); 0 leaves
     // it to the stepper. `gaps` has one entry for each contact; of a held contact, only state_error is used.
@@ -68,7 +68,7 @@ class Flow {
     std::unique_ptr<DomainMonitor> edges_;  // null if the system has no edges
     bool is_examined_ = false;              // edges_ has the polynomials of the last step
     const Model* model_;
-    std::vector<double> parameters_;
+    std::span<const double> parameters_;
     Model::MotionEvaluators motions_;          // by mode, created at first use
     double t_ = 0.0, span_ = 0.0, end_ = 0.0;  // end_ = t_ + span_, rounded
     double first_ = 0.0;                       // bound on the next step; 0: none

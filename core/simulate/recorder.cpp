@@ -200,7 +200,7 @@ void Recorder::after_impact(ContactSet opened, Mode mode) {
     trajectory_.events.back().latched = latched_;
 }
 
-void Recorder::jump(Event event, const Exchange& exchange) {
+void Recorder::jump(Event&& event, const Exchange& exchange) {
     trajectory_.work += exchange.work;
     trajectory_.loss += exchange.loss;
     this->event(std::move(event));
@@ -217,7 +217,7 @@ void Recorder::after_jumps(std::size_t count, Mode mode) {
     }
 }
 
-void Recorder::event(Event event) {
+void Recorder::event(Event&& event) {
     if (keep_ == Recording::final_state) {
         const int jump = event.jump ? static_cast<int>(event.jump->number) : -1;
         trajectory_.passages.push_back({{event.kind}, event.contacts, event.t, 0.0, jump});
@@ -229,6 +229,7 @@ void Recorder::event(Event event) {
     event.loss = trajectory_.loss;
     event.heat = trajectory_.heat;
     if (event.is_zeno()) event.impacts = trajectory_.phases.back().impacts;
+    make_room(trajectory_.events, 1, trajectory_.run.options.memory);
     trajectory_.events.push_back(std::move(event));
 }
 

@@ -58,11 +58,11 @@ class Recorder {
     // Adds the work and loss of such a jump.
     void add(const Exchange& exchange);
     // Records a jump of the state, with its loss.
-    void jump(Event event, const Exchange& exchange);
+    void jump(Event&& event, const Exchange& exchange);
     // Sets the mode after the last jumps, once it is decided.
     void after_jumps(std::size_t count, Mode mode);
     // Records any other event.
-    void event(Event event);
+    void event(Event&& event);
     // The contacts that do not count, from here on.
     void set_inactive(ContactSet inactive) { inactive_ = inactive; }
     // The contacts that a latch holds, from here on.

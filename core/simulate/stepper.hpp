@@ -19,6 +19,8 @@
 
 namespace achilles {
 
+class ContactCache;
+
 // The energy that a motion takes up from forces and moving surfaces, and what friction turns into heat.
 struct EnergyFlow {
     double work = 0.0, heat = 0.0;
@@ -67,7 +69,8 @@ class Stepper {
     virtual long evaluations() const = 0;
 };
 
-std::unique_ptr<Stepper> make_dopri5(const Model& model, const Run& run);
-std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run);
+// `surfaces` of this run; it must outlive the stepper.
+std::unique_ptr<Stepper> make_dopri5(const Model& model, const Run& run, ContactCache& surfaces);
+std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run, ContactCache& surfaces);
 
 }  // namespace achilles

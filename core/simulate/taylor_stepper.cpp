@@ -24,13 +24,13 @@ TermSizes<double> sizes_of(const Polynomial& p) {
 
 }  // namespace
 
-TaylorStepper::TaylorStepper(const Model& model, const Run& run)
+TaylorStepper::TaylorStepper(const Model& model, const Run& run, ContactCache& surfaces)
     : dof_(static_cast<std::size_t>(model.dof())),
       tolerance_(std::max(run.options.tolerance, unit_roundoff)),
       model_(&model),
-      parameters_(run.parameters),
+      parameters_(surfaces.run().parameters),
       step_(dof_, model.contacts(), tolerance_),
-      gap_units_(model, run) {}
+      gap_units_(model, run, surfaces) {}
 
 void TaylorStepper::initialize(Mode mode, const State& state, std::span<const Gap> gaps) {
     if (motion_ == nullptr || mode != mode_) {
@@ -206,8 +206,8 @@ bool TaylorStepper::stays_negative(std::size_t contact) const {
     });
 }
 
-std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run) {
-    return std::make_unique<TaylorStepper>(model, run);
+std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run, ContactCache& surfaces) {
+    return std::make_unique<TaylorStepper>(model, run, surfaces);
 }
 
 }  // namespace achilles

@@ -14,7 +14,7 @@ namespace achilles {
 // long that powers of their length overflow.
 class TaylorStepper : public Stepper {
  public:
-    TaylorStepper(const Model& model, const Run& run);
+    TaylorStepper(const Model& model, const Run& run, ContactCache& surfaces);
 
     void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
@@ -49,7 +49,7 @@ class TaylorStepper : public Stepper {
     std::size_t dof_;
     double tolerance_;
     const Model* model_;
-    std::vector<double> parameters_;
+    std::span<const double> parameters_;
     std::map<Mode, MotionExpansion> motions_;  // created at first use
     MotionExpansion* motion_ = nullptr;        // the entry of mode_
     Mode mode_;

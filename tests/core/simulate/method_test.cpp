@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/systems.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/stepper.hpp"
 
@@ -202,7 +203,8 @@ TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
     auto run = model->default_run();
     for (const double g : {1.0, 1e-11, -1.0}) {
         run.parameters[0] = g;
-        const auto stepper = make_taylor(*model, run);
+        ContactCache surfaces(*model, run);
+        const auto stepper = make_taylor(*model, run, surfaces);
         const Gap gap;
         stepper->initialize(Mode::holding(ContactSet::of(0)), {run.q, run.v}, std::span(&gap, 1));
         ASSERT_EQ(stepper->do_step(0.0, 1.0, 0.0, 1e-15), StepFailure::none);
