@@ -21,12 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void apply(Session& session, const std::string& journal) {
-    for (const Command& command : parse_journal(journal)) {
-        session.apply(command);
-        EXPECT_EQ(session.error(), "") << to_text(command);
-    }
-}
+using test::apply;
 
 // Sessions that differ from their files in various ways.
 const std::string changes[] = {

@@ -1,8 +1,11 @@
 // Sessions on systems of the assets, and surfaces for the explorer.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
 
+#include "journal/journal.hpp"
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
 #include "surface/offscreen.hpp"
@@ -26,6 +29,14 @@ inline SystemSource library() {
 
 inline Session session(const std::string& name, Timeout patience = {}) {
     return {name, system(name), library(), patience};
+}
+
+// Applies the commands of a journal, each without an error.
+inline void apply(Session& session, const std::string& journal) {
+    for (const Command& command : parse_journal(journal)) {
+        session.apply(command);
+        EXPECT_EQ(session.error(), "") << to_text(command);
+    }
 }
 
 // Elastic impacts up to max_impacts: takes seconds.

@@ -16,14 +16,8 @@
 namespace achilles {
 namespace {
 
+using test::apply;
 using test::Hands;
-
-void apply(Session& session, const std::string& journal) {
-    for (const Command& command : parse_journal(journal)) {
-        session.apply(command);
-        EXPECT_EQ(session.error(), "") << to_text(command);
-    }
-}
 
 std::string refused(Session& session, const std::string& line) {
     session.apply(parse_command(line));
