@@ -235,6 +235,8 @@ const Shortcut gestures[] = {
     {"Mechanism", "drag beside", "pan; turn a system in space"},
     {"Mechanism", "right drag", "move the camera"},
     {"Mechanism", "double click", "the whole run"},
+    {"Events", "click", "choose it and open its card"},
+    {"Events", "right click", "on a title: the columns"},
 };
 
 // A command that turns something on, if it is on, becomes the one that turns it off.

@@ -231,6 +231,9 @@ TEST(FifteenTasks, ARunOfFewStepsIsProvedByItself) {
     EXPECT_EQ(hands.middle(second_zeno(hands.session)).x, before.x) << "the strip does not move";
     for (const char* seen : {"Zeno 1, proved", "proved to t = 20 s"}) EXPECT_TRUE(hands.says(seen)) << hands.letters();
     EXPECT_TRUE(hands.all.empty());
+    hands.click("tab proof");
+    EXPECT_TRUE(hands.says("Show tubes"));
+    EXPECT_FALSE(hands.says("Prove this run")) << "it is proved";
     // The next run stops it, and is proved in turn.
     hands.session.apply(command::Set{"e", 0.4});
     hands.session.settle();

@@ -311,6 +311,17 @@ TEST(Marks, NeitherTheRightButtonNorADoubleClickSeeks) {
     EXPECT_EQ(fits, 1);
 }
 
+// Below the buttons of the player is the timeline, which a tooltip must not cover.
+TEST(Player, TooltipsStandAboveIt) {
+    Hands hands("ball_on_sine");
+    for (const char* place : {"play", "loop"}) {
+        hands.point(place);
+        const Rectangle tooltip = hands.tooltip(), button = hands.state.places.at(place);
+        EXPECT_GT(tooltip.height, 0.0F) << place;
+        EXPECT_LE(tooltip.y + tooltip.height, button.y) << place;
+    }
+}
+
 TEST(Escape, BelongsToWhatIsInFront) {
     Hands hands("ball_on_sine");
     hands.click("pin");
