@@ -329,9 +329,12 @@ EventTable::EventTable(const Session& session, const ImVec2& size, bool is_alone
     ImGui::TableNextRow(ImGuiTableRowFlags_None, ImGui::GetTextLineHeightWithSpacing());
     title(number_column, "#"), title(time_column, "t (s)"), title(words_column, "event");
     if (is_alone) tooltip(precision_text());
+    // A long unit, as of an energy divided by a mass, leaves room for one word.
     const std::string unit = typeset_unit(session.sentences().energy_unit());
+    std::string lost = with_unit("energy lost", unit);
+    if (width_of(lost) > units(column_width - 8.0F)) lost = with_unit("lost", unit);
     for (std::size_t i = 0; i < values_; ++i)
-        title(column_of(i), i == 0 ? with_unit("energy lost", unit) : is_held(i) ? "held" : state_of(i).title);
+        title(column_of(i), i == 0 ? lost : is_held(i) ? "held" : state_of(i).title);
 }
 
 EventTable::~EventTable() {

@@ -168,6 +168,19 @@ std::vector<Nearness> probes(const ContactGeometry& touch, AnchorPoint& grip, st
     return found;
 }
 
+// Where the gap of a contact is examined: at the start and, if its line is not drawn there, where it first closes. A
+// contact that counts only sometimes is no ground beyond its line.
+std::vector<State> examined(const Trajectory& trajectory, std::size_t contact) {
+    std::vector<State> states{trajectory.run.start()};
+    if (trajectory.model->is_conditional(contact)) return states;
+    for (const Event& event : trajectory.events)
+        if (event.contacts.contains(contact)) {
+            states.push_back({event.q, event.v_after, event.t});
+            break;
+        }
+    return states;
+}
+
 }  // namespace
 
 void ContactGeometry::find_tips(const Mechanism& mechanism, const Trajectory& trajectory,
@@ -193,18 +206,22 @@ void ContactGeometry::find_discs(const Mechanism& mechanism, const Trajectory& t
         Disc disc{item, grip, {}};
         const auto pair = plane_of(disc.grip, start);
         for (std::size_t contact = 0; contact < model_->contacts(); ++contact) {
-            const std::vector<Nearness> near = probes(*this, disc.grip, contact, start, radius);
-            if (near.empty()) continue;
+            std::vector<Nearness> near;
+            const DrawnShape *of_center = nullptr, *line = nullptr;
             const auto places = [&](double depth) {
                 std::vector<Point> points;
                 for (const Nearness& one : near)
                     points.push_back({one.foot.x - depth * one.away.x, one.foot.y - depth * one.away.y});
                 return points;
             };
-            const DrawnShape* of_center = line_through(shapes, places(0.0), within * radius);
+            for (const State& state : examined(trajectory, contact)) {
+                near = probes(*this, disc.grip, contact, state, radius);
+                if (near.empty()) continue;
+                of_center = line_through(shapes, places(0.0), within * radius);
+                line = of_center != nullptr ? of_center : line_through(shapes, places(radius), within * radius);
+                if (line != nullptr) break;
+            }
             if (of_center != nullptr) disc.contacts.push_back(contact);
-            const DrawnShape* line =
-                of_center != nullptr ? of_center : line_through(shapes, places(radius), within * radius);
             if (line == nullptr || known[contact]) continue;
             Solid solid{contact, of_center != nullptr ? 0.0 : radius};
             if (pair && gap_depends_only_on(contact, *pair)) {

@@ -107,6 +107,21 @@ TEST(Disc, RestsOnTheGroundItTouches) {
     }
 }
 
+// A floor that is drawn only where the ball reaches it is solid everywhere, since its gap is that of a floor everywhere.
+// A table is not: beside it, its contact does not count.
+TEST(Ground, IsFoundWhereAContactFirstCloses) {
+    SceneFixture ramp("wavy_ramp");
+    const Drawing slope = ramp.draw(0.0, ramp.stage.limits());
+    for (const double x : {0.2, 2.0, 4.0}) {
+        EXPECT_TRUE(is_solid(slope, {x, -0.1})) << x;
+        EXPECT_FALSE(is_solid(slope, {x, 1.2})) << x;
+    }
+    SceneFixture table("superball");
+    const Drawing room = table.draw(0.0, table.stage.limits());
+    EXPECT_TRUE(is_solid(room, {-0.5, -0.02})) << "the floor";
+    for (double y = 0.1; y < room.y_high; y += 0.05) EXPECT_FALSE(is_solid(room, {-0.5, y})) << y;
+}
+
 TEST(Disc, IsWhereTheFileSaysFarFromTheGround) {
     SceneFixture staged("ball_on_sine");
     const DrawnShape ball = ball_in(staged.draw(0.0, staged.stage.limits()));
