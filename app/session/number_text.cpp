@@ -14,7 +14,8 @@ namespace achilles {
 std::string typeset_sentence(std::string text) {
     for (const auto& [plain, symbol] :
          {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"}, std::pair{"_inf", "\u221e"},
-          std::pair{" - ", " \u2212 "}, std::pair{" deg/s", "\u00b0/s"}})
+          std::pair{" - ", " \u2212 "}, std::pair{" deg/s", "\u00b0/s"}, std::pair{"^2", "\u00b2"},
+          std::pair{"^3", "\u00b3"}})
         for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
             text.replace(at, std::string_view(plain).size(), symbol);
     // Only in powers of ten, not in compound words.

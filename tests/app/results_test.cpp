@@ -256,6 +256,14 @@ TEST(EventList, HidesAColumn) {
     EXPECT_TRUE(hands.says("energy lost"));
 }
 
+// The energies of a walker without masses have a long unit.
+TEST(EventList, HasUnitsAsTheyAreWritten) {
+    Hands hands("simplest_walker");
+    EXPECT_TRUE(hands.says("rad2/s2 lost")) << "exponents are raised digits";
+    EXPECT_TRUE(hands.says("lost (rad")) << "the whole title of the column";
+    EXPECT_FALSE(hands.says("^2"));
+}
+
 TEST(EventList, ShowsEveryImpactWhereThereIsNothingElse) {
     Hands hands("ball_on_floor");
     EXPECT_FALSE(hands.state.places.contains("event 1"));
