@@ -435,7 +435,12 @@ void Session::stop_followers() {
 }
 
 void Session::receive_estimate(Timeout patience) {
-    if (simulated_->estimate || !simulated_->is_estimated || shows_start()) return;
+    if (simulated_->estimate || shows_start()) return;
+    if (!simulated_->is_estimated) {
+        // On a few cores it would delay the first picture of the run, and the next run is waited for.
+        if (patience && (watch_ != nullptr || has_coarse_curves() || !is_on_screen())) return;
+        return estimate(patience);
+    }
     try {
         simulated_->estimate = estimator_->take(patience);
     } catch (const std::bad_alloc&) {
@@ -484,7 +489,7 @@ void Session::receive(Timeout patience) {
     simulated_ = *motion;
     follow_direction();
     watch_.reset();
-    if (!has_coarse_curves()) estimate(patience_);
+    if (!patience_) estimate({});  // otherwise once it is on the screen
     try {
         if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), pin_requests_, simulated_);
     } catch (const InputError& problem) {
