@@ -87,7 +87,7 @@ void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
                             {x, track.top + units(5.0F)}, packed(text_color()));
 }
 
-// Of the last item; below it would be the timeline.
+// Shows the tooltip of the last item above it, since a tooltip below it would cover the timeline.
 void tooltip_above(const std::string& text) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y}, true);

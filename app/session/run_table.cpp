@@ -83,7 +83,7 @@ const std::string nothing = "\u2013";
 struct RunStep {
     std::string name;
     double t = 0.0, error = 0.0;  // s
-    std::string digits;           // of t, as everywhere
+    std::string digits;           // the digits of t that every panel shows
 };
 
 std::vector<RunStep> steps_of(const Trajectory& run, const Precision& precision) {

@@ -385,8 +385,8 @@ void Session::estimate(Timeout patience) {
 }
 
 // Replaces coarse curves by exact ones. They, and the error estimate of such a run, begin when the coarse ones are on
-// the screen, so that they do not delay them. Plots that were composed meanwhile, for a command, are exact already, and
-// so is the trail of a scene that was turned.
+// the screen, so that they do not delay them. Plots that were composed meanwhile for a command are exact already. The
+// trail of a scene that was turned is exact, too.
 void Session::follow_curves(Timeout patience) {
     if (!has_coarse_curves() || (patience && watch_ != nullptr)) {
         curves_worker_->take(0.0);  // what a stopped job has left

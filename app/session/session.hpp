@@ -273,7 +273,7 @@ class Session {
         bool dark = false;  // theme of `plots`
         bool has_coarse_plots;
         std::vector<Panel> plots;
-        int updates = 0;            // of the session since its arrival
+        int updates = 0;            // how often the session was updated since the run came
         bool is_estimated = false;  // its error estimate has begun
     };
     // The exact curves of a run that was shown with coarse ones.

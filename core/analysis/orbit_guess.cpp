@@ -31,8 +31,8 @@ struct MotionPhase {
     bool after_release = false;
     Mode mode;
 };
-// The longest part of a motion in contact in which its held contacts count: elsewhere a start would not be held. False if
-// there is none.
+// The longest part of a motion in contact in which its held contacts count: elsewhere a start would not be held. Returns
+// false if the motion has no such part.
 bool keep_where_contacts_count(const Trajectory& run, MotionPhase& phase) {
     const Model& model = *run.model;
     ContactSet conditional;

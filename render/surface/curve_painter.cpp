@@ -32,7 +32,7 @@ void main() {
 // from the nearest point of the edge. Also correct for strokes thinner than a pixel.
 const char* edge_fragment = R"(flat in vec2 a, b;
 uniform vec2 stroke;
-uniform vec2 origin;   // of the region in the mask
+uniform vec2 origin;   // corner of the region in the mask
 layout(location = 0) out vec4 coverage;
 void main() {
     vec2 p = (gl_FragCoord.xy - origin) - a, d = b - a;
@@ -42,7 +42,7 @@ void main() {
 })";
 
 const char* overlay_vertex = R"(layout(location = 0) in vec4 area;   // in pixels: origin, size
-uniform vec2 size;   // of the target
+uniform vec2 size;   // size of the target
 void main() {
     vec2 corner = vec2(float(gl_VertexID & 1), float((gl_VertexID >> 1) & 1));
     gl_Position = vec4(2.0 * (area.xy + corner * area.zw) / size - 1.0, 0.0, 1.0);

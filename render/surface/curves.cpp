@@ -158,7 +158,7 @@ constexpr std::size_t header_bytes = vertices_for(sizeof(Header)) * sizeof(ImDra
 static_assert(sizeof(Color) == 4);
 
 const char* tiles_vertex = R"(uniform vec4 area;   // in pixels: origin, size
-uniform vec2 size;   // of the target
+uniform vec2 size;   // size of the target
 out vec2 at;
 void main() {
     at = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1));
