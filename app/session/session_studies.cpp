@@ -194,7 +194,8 @@ void Session::stop_proof_behind() {
     run_proved_behind_.reset();
 }
 
-// Starts the proof once the run and its estimate are finished and on the screen. The next run stops it.
+// Starts the proof once the run and its estimate are finished; the estimate waits until the run is on the screen. The
+// next run stops the proof.
 void Session::follow_proof_behind(Timeout patience) {
     constexpr int most_steps = 150;  // about 0.1 s for two coordinates
     if (!proves_behind_) return;
@@ -203,7 +204,6 @@ void Session::follow_proof_behind(Timeout patience) {
     if (!is_wanted) return stop_proof_behind();
     try {
         if (run_proved_behind_ != simulated_) {
-            if (patience && !is_on_screen()) return stop_proof_behind();
             Run run = trajectory().run;
             run.options.max_steps = std::min(run.options.max_steps, most_steps);
             run_proved_behind_ = simulated_;
