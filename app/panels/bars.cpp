@@ -115,7 +115,7 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
 
 namespace {
 
-constexpr float edge = 10.0F;  // left and right, as for the panels
+constexpr float bar_margin = 10.0F;  // left and right, as for the panels
 
 constexpr float sign_room = 16.0F, line_room = 22.0F;
 
@@ -191,8 +191,8 @@ void show_legend(const Session& session) {
     const bool has_tube = session.proof() != nullptr;
     const Tube tube = proof_tube(session.theme());
     ImGui::SameLine();
-    if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
-    ImGui::SetCursorPosX(content_right() - units(edge) - width + between);
+    if (ImGui::GetContentRegionAvail().x < width + units(bar_margin)) return ImGui::NewLine();
+    ImGui::SetCursorPosX(content_right() - units(bar_margin) - width + between);
     const std::vector<int> pinned = drawn_pinned(session);
     const float more = pinned.empty() ? 0.0F : line_room;
     for (const PhaseLook look : possible_looks(*session.model())) {
@@ -291,7 +291,7 @@ void show_estimate(const Session& session) {
     const std::string text = fmt::format("   \u00b7   estimated error {}", number(estimate->end->size(), "{:.1g}"));
     const float room = ImGui::GetWindowPos().x + content_right() - ImGui::GetItemRectMax().x;
     const float needed = ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + legend_width(session);
-    if (room < needed + units(edge)) return;
+    if (room < needed + units(bar_margin)) return;
     ImGui::SameLine(0.0F, 0.0F);
     ImGui::TextUnformatted(text.c_str());
     tooltip("error of the state at the end, to first order: an estimate, not a proof");
@@ -338,7 +338,8 @@ void show_status(const Session& session, const PanelState& state) {
     const ImVec2 corner = ImGui::GetWindowPos();
     ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
                                         ImGui::GetColorU32(ImGuiCol_Border));
-    ImGui::SetCursorPos({units(edge), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
+    ImGui::SetCursorPos(
+        {units(bar_margin), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
     if (const RunMonitor* watch = session.under_way()) return show_progress(session, state, *watch);
     show_proof_status(session);
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
@@ -367,7 +368,7 @@ void show_status(const Session& session, const PanelState& state) {
         const auto event = static_cast<std::size_t>(session.selected() - 1);
         const std::string event_text =
             fmt::format("event {}: ", event + 1) + typeset_sentence(session.sentences().of(event));
-        const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
+        const float room = std::max(1.0F, content_right() - units(bar_margin) - ImGui::GetCursorPosX());
         cell(ImGui::GetCursorScreenPos(), event_text, room, text_color());
         ImGui::Dummy({std::min(width_of(event_text), room), ImGui::GetTextLineHeight()});
         show_legend(session);
@@ -382,7 +383,7 @@ void show_status(const Session& session, const PanelState& state) {
         "{}{}{}{} steps{}{}energy drift {}{}{}", seconds, session.sentences().impacts(), between_facts, s.steps, gap,
         between_facts, s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
         between_facts, to_text(trajectory.run.options.method));
-    const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
+    const float room = std::max(1.0F, content_right() - units(bar_margin) - ImGui::GetCursorPosX());
     // Whole facts are left out where there is no room; the tooltip has them.
     std::string shown = text;
     for (std::size_t end = shown.rfind(between_facts); width_of(shown) > room && end != std::string::npos;

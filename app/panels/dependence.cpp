@@ -82,7 +82,7 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
 }
 
 // Status text: which run the values belong to, and what the bars mean.
-std::string remark(const Session& session) {
+std::string remark_on_dependence(const Session& session) {
     if (session.sensitivities() == nullptr) return session.sensitivities_job().is_busy() ? "computing\u2026" : "";
     if (!session.sensitivities_are_current()) return "from the previous run; this run is being computed";
     if (!session.sensitivities()->quantity.refused.empty()) return "";
@@ -104,7 +104,7 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
         if (is_there) cell({x, y}, value, width, is_old ? faint_color() : text_color());
         x += width + units(16.0F);
     }
-    const std::string remark_text = remark(session);
+    const std::string remark_text = remark_on_dependence(session);
     const float width = std::min(width_of(remark_text), right - x);
     if (width > units(60.0F)) cell({std::floor(right - width), y}, remark_text, width, faint_color());
     ImGui::SetCursorScreenPos(at);
@@ -114,18 +114,19 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
 // ---- the bars ----
 
 // Widths of the parts of a line: name, bar, derivative.
-constexpr float slider_name_width = 62.0F, number_width = 140.0F, between = 28.0F, min_bar = 120.0F, max_bar = 560.0F;
+constexpr float slider_name_width = 62.0F, number_width = 140.0F, bar_spacing = 28.0F, min_bar = 120.0F,
+                max_bar = 560.0F;
 
 struct Lines {
     Lines(std::size_t count, const Rectangle& room, float high) : height(high) {
         const auto fit = std::max<std::size_t>(static_cast<std::size_t>(std::max(0.0F, room.height / high - 1.0F)), 1);
-        const float least = units(slider_name_width + min_bar + number_width + between);
+        const float least = units(slider_name_width + min_bar + number_width + bar_spacing);
         const auto most = std::max<std::size_t>(static_cast<std::size_t>(room.width / least), 1);
         const std::size_t columns = std::clamp<std::size_t>((count + fit - 1) / fit, 1, most);
         each = (count + columns - 1) / columns;
         // Limit the length of bars; longer ones are not easier to read.
-        const float others = units(slider_name_width + number_width + between);
-        width = std::min((room.width + units(between)) / static_cast<float>(columns), others + units(max_bar));
+        const float others = units(slider_name_width + number_width + bar_spacing);
+        width = std::min((room.width + units(bar_spacing)) / static_cast<float>(columns), others + units(max_bar));
         bar = std::max(units(8.0F), width - others);
         corner = {room.x, room.y};
     }
@@ -179,7 +180,7 @@ void paint_line(const Session& session, const Sensitivities& known, const Sensit
 
 void show_line(const Session& session, const Sensitivities& known, const Sensitivities::Sensitivity& by,
                const Lines& lines, std::size_t i, PanelState& state, Commands& commands) {
-    const ImVec2 at = lines.at(i), size{lines.width - units(between), ImGui::GetTextLineHeight()};
+    const ImVec2 at = lines.at(i), size{lines.width - units(bar_spacing), ImGui::GetTextLineHeight()};
     ImGui::SetCursorScreenPos(at);
     if (ImGui::InvisibleButton(by.name.c_str(), size))
         commands.push_back(sweep_over(session, by.name, known.quantity.expression));

@@ -141,7 +141,7 @@ std::string from_text(const OrbitOptions& typed) {
 }
 
 // Status text of the search.
-std::string remark(const Session& session) {
+std::string remark_on_orbit(const Session& session) {
     if (const OrbitMonitor* const watch = session.orbit_under_way())
         return fmt::format("searching: {} runs tried", watch->runs.load());
     const auto found = session.orbit();
@@ -176,7 +176,7 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
         tooltip("period of the drive, and shift of the coordinates after one period");
         show_closing(session, view, state);
     }
-    const std::string remark_text = remark(session);
+    const std::string remark_text = remark_on_orbit(session);
     const float width = std::min(width_of(remark_text), right - x);
     if (width > units(40.0F))
         cell({std::floor(right - width), at.y + ImGui::GetStyle().FramePadding.y}, remark_text, width, faint_color());

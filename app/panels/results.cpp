@@ -18,7 +18,8 @@ namespace achilles {
 
 namespace {
 
-constexpr float padding = 6.0F, sign_width = 18.0F, between = 12.0F, max_of_strip = 0.6F, arrow_width = 30.0F;
+constexpr float strip_padding = 6.0F, sign_width = 18.0F, cell_spacing = 12.0F, max_of_strip = 0.6F,
+                arrow_width = 30.0F;
 
 // Text and width of a cell. In a strip of one line the time is beside the name.
 struct ResultCell {
@@ -68,13 +69,13 @@ VisibleResults shown_from(const Session& session, const std::vector<ListedResult
     for (std::size_t i = begin; i < results.size(); ++i) {
         ResultCell cell = cell_of(session, results[i], strip);
         if (!fits(cell)) return shown;
-        x += cell.width + units(between);
+        x += cell.width + units(cell_spacing);
         shown.cells.push_back(std::move(cell));
     }
     while (shown.begin > 0) {
         ResultCell cell = cell_of(session, results[shown.begin - 1], strip);
         if (!fits(cell)) break;
-        x += cell.width + units(between);
+        x += cell.width + units(cell_spacing);
         shown.cells.insert(shown.cells.begin(), std::move(cell));
         --shown.begin;
     }
@@ -87,7 +88,7 @@ VisibleResults shown_around(const Session& session, const std::vector<ListedResu
     std::size_t begin = seen;
     float x = 0.5F * cell_of(session, results[seen], strip).width;
     while (begin > 0) {
-        x += cell_of(session, results[begin - 1], strip).width + units(between);
+        x += cell_of(session, results[begin - 1], strip).width + units(cell_spacing);
         if (x > 0.5F * strip.room) break;
         --begin;
     }
@@ -125,7 +126,7 @@ void use_hand(const VisibleResults& shown, std::size_t count, bool is_hovered, P
     }
     if (!strip.is_held) return;
     strip.dragged += io.MouseDelta.x;
-    const float step = shown.cells.front().width + units(between);
+    const float step = shown.cells.front().width + units(cell_spacing);
     while (std::abs(strip.dragged) > 0.5F * step) {
         const bool back = strip.dragged > 0.0F;
         move(back ? -1 : 1);
@@ -213,17 +214,17 @@ void show_none(const Session& session, ImVec2 at, float width) {
 
 float results_height(const Session& session) {
     if (session.scene().presents()) return 0.0F;
-    return 2.0F * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(padding);
+    return 2.0F * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(strip_padding);
 }
 
 void show_results(const Session& session, PanelState& state, Commands& commands) {
     const Rectangle area = remaining();
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
-    const float left = area.x + units(12.0F), width = area.width - units(24.0F), top = area.y + units(padding);
+    const float left = area.x + units(12.0F), width = area.width - units(24.0F), top = area.y + units(strip_padding);
     // Windows are aligned to whole pixels, so a strip of results_height() may be one pixel lower.
     const float line = ImGui::GetTextLineHeightWithSpacing();
-    const auto lines = static_cast<int>((area.height + 1.0F - 2.0F * units(padding)) / line);
+    const auto lines = static_cast<int>((area.height + 1.0F - 2.0F * units(strip_padding)) / line);
     if (lines < 1) return;
     const std::vector<ListedResult> results = results_of(session.trajectory());
     if (results.empty()) return show_none(session, {left, top}, width);
@@ -241,7 +242,7 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
         const std::size_t at = shown.begin + i;
         const bool is_present = session.selected() == 0 && at == seen && events[results[at].event].t <= session.time();
         show_result(session, results[at], shown.cells[i], {x, top}, area, is_present, state, commands);
-        x += shown.cells[i].width + units(between);
+        x += shown.cells[i].width + units(cell_spacing);
     }
     if (has_all) return;
     const std::size_t before = shown.begin, after = results.size() - shown.begin - shown.cells.size();

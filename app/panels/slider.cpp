@@ -28,7 +28,7 @@ double share_of(const Slider& slider, double value) {
     const double low = slider.low * slider.factor, high = slider.high * slider.factor;
     return is_logarithmic(slider) ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
 }
-double value_at(const Slider& slider, double share) {
+double value_at_share(const Slider& slider, double share) {
     const double low = slider.low * slider.factor, high = slider.high * slider.factor, at = std::clamp(share, 0.0, 1.0);
     return is_logarithmic(slider) ? low * std::pow(high / low, at) : low + at * (high - low);
 }
@@ -148,7 +148,7 @@ double value_at_mouse(const Slider& slider, double share, float width, bool is_f
     const double half = 0.5 / usable(width) * (is_fine ? fine_gain : 1.0);
     for (const double sticky : {slider.value, slider.original})
         if (std::abs(share_of(slider, sticky * slider.factor) - share) <= half) return sticky;
-    return roundest(value_at(slider, share - half), value_at(slider, share + half)) / slider.factor;
+    return roundest(value_at_share(slider, share - half), value_at_share(slider, share + half)) / slider.factor;
 }
 
 // The slider itself. ImGui's value text is hidden, since it is shown beside the slider. The format has 15 digits, since
@@ -201,7 +201,8 @@ bool moved_by_keys(Slider& slider, PanelState& state) {
         const double here = share_of(slider, slider.value * slider.factor);
         const double share = std::clamp((std::isfinite(here) ? here : 0.0) + steps * step, 0.0, 1.0);
         slider.value =
-            roundest(value_at(slider, share - 0.5 * step), value_at(slider, share + 0.5 * step)) / slider.factor;
+            roundest(value_at_share(slider, share - 0.5 * step), value_at_share(slider, share + 0.5 * step)) /
+            slider.factor;
     }
     if (is_pressed(key::remove, false) || is_pressed(key::backspace, false)) slider.value = slider.original;
     if (is_pressed(key::enter, false)) begin_typing(slider, state.typed);

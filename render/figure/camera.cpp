@@ -16,10 +16,10 @@ namespace achilles {
 
 namespace {
 
-constexpr std::array<std::pair<CameraMode, std::string_view>, 4> names{{{CameraMode::fit, "fit"},
-                                                                        {CameraMode::fixed, "fixed"},
-                                                                        {CameraMode::follow, "follow"},
-                                                                        {CameraMode::zeno, "zeno"}}};
+constexpr std::array<std::pair<CameraMode, std::string_view>, 4> mode_names{{{CameraMode::fit, "fit"},
+                                                                             {CameraMode::fixed, "fixed"},
+                                                                             {CameraMode::follow, "follow"},
+                                                                             {CameraMode::zeno, "zeno"}}};
 
 void include(Drawing& all, const Point& p) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) return;
@@ -46,10 +46,10 @@ double eased(double s) { return s * s * (3.0 - 2.0 * s); }
 
 }  // namespace
 
-std::string_view to_text(CameraMode mode) { return names[static_cast<std::size_t>(mode)].second; }
+std::string_view to_text(CameraMode mode) { return mode_names[static_cast<std::size_t>(mode)].second; }
 
 std::optional<CameraMode> camera_mode_from(std::string_view text) {
-    for (const auto& [mode, name] : names)
+    for (const auto& [mode, name] : mode_names)
         if (name == text) return mode;
     return std::nullopt;
 }

@@ -30,7 +30,7 @@ bool is_near(const Point& a, const Point& b, const Drawing& seen) {
            std::max(a.y, b.y) + reach >= seen.y_low && std::min(a.y, b.y) - reach <= seen.y_high;
 }
 
-double distance_to_chord(const Point& p, const Point& a, const Point& b) {
+double distance_to_line(const Point& p, const Point& a, const Point& b) {
     const double x = b.x - a.x, y = b.y - a.y, length = std::hypot(x, y);
     if (!(length > 0.0)) return std::hypot(p.x - a.x, p.y - a.y);
     return std::abs(x * (p.y - a.y) - y * (p.x - a.x)) / length;
@@ -48,7 +48,7 @@ class Refiner {
             const double s = 0.5 * (a.s + b.s);
             const CurveSample middle{s, curve_(s)};
             constexpr double flat = 5e-5;  // of the diagonal: a twentieth of a pixel
-            if (s != a.s && s != b.s && !(is_short && distance_to_chord(middle.p, a.p, b.p) <= flat * size_)) {
+            if (s != a.s && s != b.s && !(is_short && distance_to_line(middle.p, a.p, b.p) <= flat * size_)) {
                 add(a, middle, halvings + 1);
                 return add(middle, b, halvings + 1);
             }

@@ -180,8 +180,8 @@ double least_of(const PreparedView& view, const Trajectory& run, std::size_t qua
     return is_positive ? 0.0 : -HUGE_VAL;
 }
 
-// Position of a value along an axis, 0 to 1.
-double share_of(const Axis& axis, double value) {
+// Position of a value along an axis, 0 to 1; at the start of a logarithmic axis for values below it.
+double share_within(const Axis& axis, double value) {
     if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
     return std::log(std::max(value, axis.low) / axis.low) / std::log(axis.high / axis.low);
 }
@@ -191,13 +191,14 @@ double share_of(const Axis& axis, double value) {
 bool is_seen(const Tube& tube, const Panel& panel) {
     constexpr double wide = 2.0;
     const auto middle = [&](const Tube::Slice& at) {
-        return 0.5 * (share_of(panel.y, at.low) + share_of(panel.y, at.high));
+        return 0.5 * (share_within(panel.y, at.low) + share_within(panel.y, at.high));
     };
     for (std::size_t i = 0; i + 1 < tube.slices.size(); ++i) {
         const Tube::Slice &at = tube.slices[i], &next = tube.slices[i + 1];
         if (!is_within(panel.x, at.x)) continue;
-        const double along = wide * (share_of(panel.x, next.x) - share_of(panel.x, at.x)),
-                     up = middle(next) - middle(at), high = share_of(panel.y, at.high) - share_of(panel.y, at.low);
+        const double along = wide * (share_within(panel.x, next.x) - share_within(panel.x, at.x)),
+                     up = middle(next) - middle(at),
+                     high = share_within(panel.y, at.high) - share_within(panel.y, at.low);
         if (along > 0.0 && high * along / std::hypot(along, up) > least_seen) return true;
     }
     return false;
