@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace achilles {
 
@@ -64,6 +66,11 @@ struct Pack<double, most> {
         return value;
     }
     static void store(const Value& value, double* to) { std::memcpy(to, &value, sizeof value); }
+    // Absolute values.
+    static Value size(const Value& value) {
+        using Bits [[gnu::vector_size(most * sizeof(double))]] = std::int64_t;
+        return reinterpret_cast<Value>(reinterpret_cast<Bits>(value) & std::numeric_limits<std::int64_t>::max());
+    }
 };
 
 }  // namespace achilles

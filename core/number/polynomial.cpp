@@ -20,14 +20,11 @@ double Polynomial::slope(double theta) const {
 }
 
 Polynomial::EndValue Polynomial::at_end() const {
-    EndValue end;
-    for (int i = degree; i >= 1; --i) {
-        const double term = c[static_cast<std::size_t>(i)];
-        end.value += term;
-        end.slope += i * term;
-    }
-    end.value += c[0];
-    return end;
+    using Pair = Pack<double, 2>::Value;  // for the value and the slope
+    constexpr Pair next{0.0, 1.0};
+    Pair sums{}, weights{1.0, static_cast<double>(degree)};
+    for (int i = degree; i >= 1; --i, weights -= next) sums += c[static_cast<std::size_t>(i)] * weights;
+    return {sums[0] + c[0], sums[1]};
 }
 
 Polynomial interpolate(const std::array<double, 5>& f) {
@@ -200,17 +197,19 @@ FirstCrossing first_descent(const Polynomial& polynomial, int known, double rema
     const PolynomialTerms p{polynomial.c.data() + known, polynomial.degree - known};
     // On [0, 1] the powers of theta decrease, so the polynomial is a convex combination of the partial sums of its
     // coefficients (Abel summation) and lies between their minimum and maximum. The same holds for the derivative.
-    double value = p.c[0], least = value, slope = p.c[1], min_slope = slope, max_slope = slope;
+    double value = p.c[0], least = value;
     for (int k = 1; k <= p.degree; ++k) {
-        const double c = p.c[k];
-        value += c;
+        value += p.c[k];
         least = std::min(least, value);
-        if (k == 1) continue;
-        slope += k * c;
+    }
+    if (least > remainder) return {};
+    double slope = p.c[1], min_slope = slope, max_slope = slope, weight = 2.0;
+    for (int k = 2; k <= p.degree; ++k, weight += 1.0) {
+        slope += weight * p.c[k];
         min_slope = std::min(min_slope, slope);
         max_slope = std::max(max_slope, slope);
     }
-    if (least > remainder || (max_slope < 0.0 && value > remainder)) return {};
+    if (max_slope < 0.0 && value > remainder) return {};
     // The polynomial decreases throughout, from above the remainder to below it: there is one root. Newton's method
     // starts from the root of the quadratic part. It may stop at the first small step if the derivative changes little,
     // else at the third.

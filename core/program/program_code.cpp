@@ -120,6 +120,8 @@ void call(Assembler& code, const void* function, std::uint32_t a, std::uint32_t 
 
 bool is_arithmetic(const Instruction& in) {
     switch (in.operation) {
+        case Operation::power:
+            return in.exponent == 2;  // the same bits as integer_power()
         case Operation::add:
         case Operation::subtract:
         case Operation::multiply:
@@ -138,6 +140,8 @@ void write_arithmetic(Assembler& code, const Instruction& in, std::uint32_t resu
         code.negate(reg, in.a);
     } else if (in.operation == Operation::sqrt) {
         code.sqrt(reg, in.a);
+    } else if (in.operation == Operation::power) {
+        code.combine(Assembler::vmul, reg, in.a, in.a);
     } else {
         code.combine(in.operation == Operation::add        ? Assembler::vadd
                      : in.operation == Operation::subtract ? Assembler::vsub

@@ -151,7 +151,6 @@ class TaylorStep {
 
  private:
     Start begin(Series& series);
-    void set_unit(std::size_t i, const Number& size) { units_[i] = 1.0 / (tolerance_ * size); }
     const Number& unit(std::size_t contact) const { return units_[2 * dof_ + contact]; }
 
     std::size_t dof_, contacts_, gaps_end_, width_;  // gaps_end_: number of contacts
@@ -171,16 +170,18 @@ auto TaylorStep<Number>::begin(Series& series) -> Start {
     using std::abs;
     Number *const c = row(0), *const events = c + 2 * dof_;
     Start start{Condition<Number>(true), Condition<Number>(true)};
+    Number* const units = units_.data();
+    const double tolerance = tolerance_;  // a copy, which no store may change
     for (std::size_t i = 0; i < 2 * dof_; ++i) {
         start.numbers = start.numbers & (abs(c[i]) < largest_state);
-        set_unit(i, 1.0 + abs(c[i]));
+        units[i] = 1.0 / (tolerance * (1.0 + abs(c[i])));
     }
     if (!any(start.numbers)) return start;
     series.begin(c, time_);
     for (std::size_t i = 0; i < dof_; ++i) start.regular = start.regular & (series.start(dof_ + contacts() + i) > 0.0);
     for (std::size_t i = 0; i < contacts(); ++i) {
         events[i] = watches_gap(i) ? gaps_[i].h : series.start(dof_ + i);
-        set_unit(2 * dof_ + i, gap_units_[i] + abs(events[i]));
+        units[2 * dof_ + i] = 1.0 / (tolerance * (gap_units_[i] + abs(events[i])));
     }
     for (std::size_t i = width_ - powers_; i < width_; ++i) units_[i] = 0.0;
     Number* const first = row(1);
@@ -244,10 +245,14 @@ template <class Number>
 void TaylorStep<Number>::event_terms(std::size_t contact, const Number& span, Number* terms) const {
     Number even = 1.0, odd = span;
     const Number square = span * span;
-    for (int k = 0; k <= order_; k += 2, even *= square, odd *= square) {
-        terms[k] = event(contact, k) * even;
-        if (k < order_) terms[k + 1] = event(contact, k + 1) * odd;
+    const Number* c = &event(contact, 0);
+    const std::size_t width = width_;
+    int k = 0;
+    for (; k < order_; k += 2, c += 2 * width, even *= square, odd *= square) {
+        terms[k] = c[0] * even;
+        terms[k + 1] = c[width] * odd;
     }
+    if (k == order_) terms[k] = c[0] * even;
 }
 
 // The terms decrease at least by half from one to the next in a step that the tolerance allows. The truncation error is
