@@ -72,7 +72,10 @@ class ContactCache {
     const Run& run() const { return run_; }
     const Restitution& restitution(std::size_t contact) const { return restitutions_[contact]; }
     // Takes the restitutions of another run, whose other parameters must be the same.
-    void bounce_as(const Run& run) { restitutions_ = model_->restitutions(run.parameters); }
+    void bounce_as(const Run& run) {
+        restitutions_ = model_->restitutions(run.parameters);
+        for (ContactKinematics& contact : free_) contact.begin_run();
+    }
     // A contact while all are open, and in a mode in which it is open.
     ContactKinematics& of(std::size_t contact) { return free_[contact]; }
     ContactKinematics& of(std::size_t contact, Mode mode);

@@ -1,5 +1,6 @@
 #include "simulate/impact.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -86,10 +87,23 @@ double ContactKinematics::gap_error(const State& state) {
     return rad(gap_.output(0));
 }
 
-// The rounding of q alone contributes a part of the bound, which is cheap to compute and often sufficient.
+// The rounding of q alone contributes a part of the bound, which is cheap to compute and often sufficient. From one step
+// to the next the whole bound grows little beyond these roundings of q and t, or beyond the bound before where they
+// become small. A value `far` above both is therefore outside without a new bound, but only a few times in succession.
 bool ContactKinematics::within_gap_error(double value, double times, const Contact& contact, const State& state) {
-    const double part = 0.5 * rounding_of_q(contact, state);  // half of it, for its own rounding
-    return std::abs(value) <= times * part || std::abs(value) <= times * gap_error(state);
+    constexpr double far = 0x1p8;
+    constexpr int uses = 7;
+    const double roundings_of_q = rounding_of_q(contact, state);
+    if (std::abs(value) <= times * (0.5 * roundings_of_q)) return true;  // half of it, for its own rounding
+    const double roundings = roundings_of_q + 0x1p-53 * std::abs(contact.gap_t * state.t);
+    if (uses_left_ > 0 && std::abs(value) > far * times * std::max(error_, error_in_roundings_ * roundings)) {
+        --uses_left_;
+        return false;
+    }
+    error_ = gap_error(state);
+    error_in_roundings_ = error_ / roundings;
+    uses_left_ = roundings > 0.0 ? uses : 0;
+    return std::abs(value) <= times * error_;
 }
 
 double ContactKinematics::hdot_error(const State& state) {

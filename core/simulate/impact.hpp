@@ -47,8 +47,11 @@ class ContactKinematics {
     void evaluate(const State& state, Contact& contact);
     // Error bound of h at q: the radius of its interval enclosure over all states that round to this one.
     double gap_error(const State& state);
-    // Whether |value|, a difference of gaps, is at most `times` that bound.
+    // Whether |value|, a difference of gaps, is at most `times` that bound. The bound of a state before serves for a
+    // value that is far above it.
     bool within_gap_error(double value, double times, const Contact& contact, const State& state);
+    // Before another run with the same parameters: no bound of the last run serves in it.
+    void begin_run() { uses_left_ = 0; }
     // Error bound of hdot.
     double hdot_error(const State& state);
     // Moves q along n until |h| is at rounding level, then sets v to s unless keep_velocity. Returns the contact
@@ -74,6 +77,10 @@ class ContactKinematics {
     std::size_t dof_;
     ContactTerms<Evaluator<double>> terms_;
     Evaluator<Interval> gap_;
+    // The last bound that within_gap_error() has computed, also in roundings of q and t, and how often it may still
+    // serve.
+    double error_ = 0.0, error_in_roundings_ = 0.0;
+    int uses_left_ = 0;
     std::optional<Evaluator<double>> normal_;
     std::optional<ReleaseTerms<Evaluator<double>>> release_;
     std::optional<ContactTerms<Evaluator<Interval>>> enclosure_;

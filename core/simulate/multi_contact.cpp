@@ -48,7 +48,7 @@ bool ExecutionAutomaton::is_order_independent(ContactSet landing) {
 std::optional<ContactSet> ExecutionAutomaton::landing_with(std::size_t which, const Contact& contact) {
     constexpr double few = 4.0, resolved = 16.0;
     const double time = ulp(next_.state.t);
-    const double when = few * surfaces_->of(which).gap_error(next_.state) / std::abs(contact.hdot) + time;
+    std::optional<double> when;  // the uncertainty of the time of impact; computed if another contact approaches
     ContactSet landing = ContactSet::of(which), in_doubt;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (i == which || next_.mode.is_held(i) || next_.touching.contains(i) || next_.inactive.contains(i)) continue;
@@ -58,7 +58,8 @@ std::optional<ContactSet> ExecutionAutomaton::landing_with(std::size_t which, co
             if (outcome_) return std::nullopt;
             continue;
         }
-        const double own = few * surfaces_->of(i).gap_error(next_.state) - other.hdot * (time + when);
+        if (!when) when = few * surfaces_->of(which).gap_error(next_.state) / std::abs(contact.hdot) + time;
+        const double own = few * surfaces_->of(i).gap_error(next_.state) - other.hdot * (time + *when);
         const double rounding = few * rounding_so_far(other) - other.hdot * resolved * time;
         if (other.h <= std::max(own, rounding)) {
             landing = landing.with(i);

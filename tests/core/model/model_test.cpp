@@ -213,6 +213,40 @@ TEST(Impacts, ReinitializationsAgreeOnTheBall) {
               1e-15);
 }
 
+// A contact that judges one state after the other decides as one that judges each for the first time: whether its own
+// roundings grow with those of q and t, while they shrink, or with an exponential of the time.
+TEST(Impacts, ADifferenceOfGapsIsJudgedByTheRoundingOfItsState) {
+    const auto model = test::typed(
+        "title = \"roundings\"\n[[coordinate]]\nname = \"x\"\n[[coordinate]]\nname = \"y\"\nstart = 1.0\n"
+        "[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"y\"\n"
+        "[[constraint]]\ngap = \"y + 1 - exp(x) + 1e-3*exp(t)\"\nrestitution = 0.5\n");
+    const auto run = model->default_run();
+    const auto state_at = [](double x, double y, double t) {
+        State state{Vector(2), Vector::Zero(2), t};
+        state.q << x, y;
+        return state;
+    };
+    std::vector<State> states;
+    for (int k = 0; k < 30; ++k) states.push_back(state_at(std::exp2(-k), std::exp2(-k), 0.0));
+    for (int k = 20; k > 0; --k) states.push_back(state_at(k, 1.0, 0.0));
+    for (int k = 0; k < 20; ++k) states.push_back(state_at(k, 1.0, 0.0));
+    for (int k = 0; k < 40; ++k) states.push_back(state_at(0.1, 1.0, k));
+    int within = 0, outside = 0;
+    for (const double part : {0.9, 0.999, 1.001, 10.0, 1e3, 1e5}) {
+        ContactKinematics surface(*model, run);
+        for (const State& state : states) {
+            const Contact contact = surface.at(state);
+            const double far = 1e9, error = surface.gap_error(state);
+            const bool is_within = surface.within_gap_error(part * 4.0 * error, 4.0, contact, state);
+            EXPECT_EQ(is_within, part <= 1.0) << part << " at x = " << state.q[0] << ", t = " << state.t;
+            EXPECT_FALSE(surface.within_gap_error(far * error, 4.0, contact, state));
+            (is_within ? within : outside)++;
+        }
+    }
+    EXPECT_EQ(within, 2 * 110);
+    EXPECT_EQ(outside, 4 * 110);
+}
+
 std::string error_of(std::string text, const std::string& from, const std::string& to) {
     text.replace(text.find(from), from.size(), to);
     try {
