@@ -13,6 +13,7 @@ namespace {
 
 constexpr int counted = 4;  // last terms of a series that are used: symmetry may make three in a row 0
 constexpr int lowest = 8;
+constexpr double settled = 0x1p-10;  // the part of the start below which the last terms of a series end it
 constexpr int highest = SeriesEvaluator<double>::highest_order;
 static_assert(highest < Polynomial::capacity);
 
@@ -41,6 +42,7 @@ DomainMonitor::DomainMonitor(const Model& model, const Run& run)
       block_(2 * static_cast<std::size_t>(model.dof())),
       series_(model.edge_series(), run.parameters),
       distances_(edges_.size()),
+      sums_(edges_.size()),
       signs_(edges_.size()) {}
 
 // An exponential or hyperbolic function has a distance, too (model/domain_boundaries.hpp): `growth` minus the rise of
@@ -52,18 +54,54 @@ double DomainMonitor::sign_of(const DomainBoundary& edge, double start) const {
     return std::abs(start) < DomainBoundary::growth ? 0.0 : std::copysign(2.0, start);
 }
 
+// The distance of one edge at the start of a step, whose series has begun. Also sets the factor of its higher terms.
+double DomainMonitor::begin_distance(std::size_t i) {
+    const double start = series_.start(i);
+    signs_[i] = sign_of(edges_[i], start);
+    return edges_[i].kind == DomainBoundary::Kind::edge ? start : DomainBoundary::growth;
+}
+
+// Whether safe_part() is 1, from the motion in time, whose polynomials over the step need not be formed. The distances
+// are expanded as far as there, but by a limited number of orders. Each lies above its smallest partial sum
+// (first_descent()) minus the terms that are left out, which are below the last ones. False means unknown.
+bool DomainMonitor::is_safe(const Stepper::TimeSeries& motion, double time, double span) {
+    series_.begin(motion.first, time);
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+        const double start = begin_distance(i);
+        if (!(start > 0.0)) return false;
+        sums_[i] = {start, start, start, &series_.output(i), {}};
+    }
+    static constexpr std::array<double, 2 * max_coordinates> zeros{};
+    const double* order = motion.first;
+    double power = span;
+    for (int k = 1; k <= 2 * lowest; ++k, power *= span) {
+        series_.extend(k, k <= motion.degree ? order += motion.width : zeros.data());
+        const std::size_t place = static_cast<std::size_t>(k) % counted;
+        const double* sign = signs_.data();
+        for (PartialSum& each : sums_) {
+            const double term = *sign++ * *each.output * power;
+            each.sum += term;
+            each.least = std::min(each.least, each.sum);
+            each.last[place] = std::abs(term);
+        }
+        const auto is_known = [](const PartialSum& each) { return each.tail() < settled * each.start; };
+        if (k < lowest || !std::all_of(sums_.begin(), sums_.end(), is_known)) continue;
+        return std::all_of(sums_.begin(), sums_.end(),
+                           [](const PartialSum& each) { return each.least > 0.125 * each.start + 2.0 * each.tail(); });
+    }
+    return false;
+}
+
 // The motion in a step is a polynomial in theta, whatever the method, so the distances are series in theta. They are
 // expanded until their last terms are small.
 double DomainMonitor::safe_part(const Stepper& stepper, double time) {
     motion_.clear();
+    const auto motion = stepper.time_series();
+    if (motion && is_safe(*motion, time, stepper.current_time())) return 1.0;
     degree_ = stepper.coefficients(motion_);
     motion_.resize(motion_.size() + block_, 0.0);
     series_.begin(motion_.data(), time, stepper.current_time());
-    for (std::size_t i = 0; i < distances_.size(); ++i) {
-        const double start = series_.start(i);
-        signs_[i] = sign_of(edges_[i], start);
-        distances_[i].c[0] = edges_[i].kind == DomainBoundary::Kind::edge ? start : DomainBoundary::growth;
-    }
+    for (std::size_t i = 0; i < distances_.size(); ++i) distances_[i].c[0] = begin_distance(i);
     bool known = false;
     for (int k = 1; k <= highest && !known; ++k) {
         series_.extend(k, motion_.data() + std::min<std::size_t>(static_cast<std::size_t>(k), degree_ + 1) * block_);
@@ -72,7 +110,7 @@ double DomainMonitor::safe_part(const Stepper& stepper, double time) {
             Polynomial& distance = distances_[i];
             distance.c[static_cast<std::size_t>(k)] = signs_[i] * series_.output(i);
             distance.degree = k;
-            known = known && tail(distance) < 0x1p-10 * distance.c[0];
+            known = known && tail(distance) < settled * distance.c[0];
         }
     }
     double theta = 1.0;

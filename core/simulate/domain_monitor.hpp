@@ -1,6 +1,7 @@
 // Limits steps so that no function reaches the edge of its domain unnoticed (model/domain_boundaries.hpp).
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,20 +21,31 @@ class DomainMonitor {
     // exp(DomainBoundary::growth). If the motion reaches an edge, the steps shorten to nothing. If it passes close to
     // one, as sqrt(x^2 + y^2) may, the steps resolve the passage.
     double safe_part(const Stepper& stepper, double time);
-    // The polynomials of that step, as from Stepper::coefficients().
+    // Whether the polynomials of that step were needed, and these polynomials, as from Stepper::coefficients().
+    bool has_motion() const { return !motion_.empty(); }
     std::uint32_t append_motion(std::vector<double>& coefficients) const {
         coefficients.insert(coefficients.end(), motion_.begin(), motion_.end() - static_cast<std::ptrdiff_t>(block_));
         return degree_;
     }
 
  private:
+    // A distance along a step as far as its series is expanded.
+    struct PartialSum {
+        double start, sum, least;    // at the start of the step, at its end, and the smallest partial sum
+        const double* output;        // of the series: its current order
+        std::array<double, 4> last;  // sizes of the last terms at the end: symmetry may make three in a row 0
+        double tail() const { return (last[0] + last[1]) + (last[2] + last[3]); }
+    };
+    bool is_safe(const Stepper::TimeSeries& motion, double time, double span);
     double safe_part(Polynomial& distance) const;
+    double begin_distance(std::size_t i);
     double sign_of(const DomainBoundary& edge, double start) const;
 
     const std::vector<DomainBoundary>& edges_;
     std::size_t block_;               // q and v
     SeriesEvaluator<double> series_;  // of the distances
     std::vector<Polynomial> distances_;
+    std::vector<PartialSum> sums_;
     std::vector<double> signs_;   // factors of the higher terms of each distance
     std::vector<double> motion_;  // the last step as polynomials, and a block of zeros
     std::uint32_t degree_ = 0;    // of those polynomials

@@ -39,8 +39,9 @@ StepFailure Flow::step(double until) {
     first_ = 0.0;
     if (edges_ && failure == StepFailure::none) {
         const double theta = edges_->safe_part(*stepper_, t_);
-        is_examined_ = !(theta < 1.0);
-        if (!is_examined_) failure = stepper_->redo_step(theta * stepper_->current_time(), least());
+        const bool is_safe = !(theta < 1.0);
+        is_examined_ = is_safe && edges_->has_motion();
+        if (!is_safe) failure = stepper_->redo_step(theta * stepper_->current_time(), least());
     }
     if (failure != StepFailure::none) return failure;
     span_ = stepper_->current_time();
@@ -143,13 +144,16 @@ std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& pow
         double sum = 0.0, size = 0.0;
         std::array<double, 4> last{};  // terms; symmetry may make three in a row 0
         bool is_below(double part) const { return last[0] + last[1] + last[2] + last[3] <= part * size; }
+        void begin(double term) { size = std::abs(sum = term); }
+        void add(double term, std::size_t place) {
+            sum += term;
+            size += last[place] = std::abs(term);
+        }
     };
     std::array<Sum, 2> sums{};
+    const double* const output[] = {&power.output(0), &power.output(outputs - 1)};  // of every order
     double factor = theta;
-    for (std::size_t i = 0; i < outputs; ++i) {
-        sums[i].sum = power.start(i) * theta;
-        sums[i].size = std::abs(sums[i].sum);
-    }
+    for (std::size_t i = 0; i < outputs; ++i) sums[i].begin(power.start(i) * theta);
     const auto are_below = [&](double part) {
         return sums[0].is_below(part) && (outputs == 1 || sums[1].is_below(part));
     };
@@ -157,12 +161,9 @@ std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& pow
     for (int k = 1; k <= SeriesEvaluator<double>::highest_order; ++k) {
         power.extend(k, k <= static_cast<int>(piece.degree) ? order += width : zeros.data());
         factor *= theta;
-        for (std::size_t i = 0; i < outputs; ++i) {
-            Sum& each = sums[i];
-            const double term = power.output(i) * factor / (k + 1);
-            each.sum += term;
-            each.size += each.last[static_cast<std::size_t>(k) % each.last.size()] = std::abs(term);
-        }
+        const std::size_t place = static_cast<std::size_t>(k) % sums[0].last.size();
+        sums[0].add(*output[0] * factor / (k + 1), place);
+        if (outputs == 2) sums[1].add(*output[1] * factor / (k + 1), place);
         if (k >= fewest && are_below(rounding)) break;
     }
     if (!are_below(accurate_)) return std::nullopt;

@@ -50,6 +50,14 @@ class Stepper {
     // blocks of ascending powers, appended to `coefficients`. The latter returns their degree.
     virtual void event_function(std::size_t contact, Polynomial& p) const = 0;
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
+    // The same in time: order k of (q, v) begins at first + k width, 0 <= k <= degree. nullopt if the stepper does not
+    // expand the motion, or if powers of the step's length may overflow.
+    struct TimeSeries {
+        const double* first;
+        std::size_t width;
+        int degree;
+    };
+    virtual std::optional<TimeSeries> time_series() const { return std::nullopt; }
     // Whether the event function is known to stay below zero along the last step by more than its remainder. False
     // means unknown.
     virtual bool stays_negative(std::size_t) const { return false; }

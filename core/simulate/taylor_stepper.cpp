@@ -12,14 +12,12 @@ constexpr double longest_near = 0x1p29;  // s; up to here no power overflows
 
 // The sums of the even and the odd terms.
 TermSizes<double> sizes_of(const Polynomial& p) {
-    double even = 0.0, odd = 0.0;
+    using Pack2 = Pack<double, 2>;
+    Pack2::Value sums{};
     const auto last = static_cast<std::size_t>(p.degree);
-    for (std::size_t k = 1; k <= last; k += 2) {
-        even += std::abs(p.c[k - 1]);
-        odd += std::abs(p.c[k]);
-    }
-    if (last % 2 == 0) even += std::abs(p.c[last]);
-    return {even + odd, std::abs(p.c[last]) + std::abs(p.c[last - 1])};
+    for (std::size_t k = 1; k <= last; k += Pack2::count) sums += Pack2::size(Pack2::load(&p.c[k - 1]));
+    if (last % 2 == 0) sums[0] += std::abs(p.c[last]);
+    return {sums[0] + sums[1], std::abs(p.c[last]) + std::abs(p.c[last - 1])};
 }
 
 }  // namespace
@@ -178,14 +176,16 @@ std::uint32_t TaylorStepper::coefficients(std::vector<double>& coefficients) con
     coefficients.resize(first + static_cast<std::size_t>(degree + 1) * block);
     double* to = coefficients.data() + first;
     const double* c = step_.row(0);
+    using Pack2 = Pack<double, 2>;  // the number of components is even
     double power = 1.0;
     for (int k = 0; k <= degree; ++k, c += step_.width(), to += block, power *= span_)
-        for (std::size_t i = 0; i < block; i += 2) {
-            const double even = c[i] * power, odd = c[i + 1] * power;
-            to[i] = even;
-            to[i + 1] = odd;
-        }
+        for (std::size_t i = 0; i < block; i += Pack2::count) Pack2::store(Pack2::load(c + i) * power, to + i);
     return static_cast<std::uint32_t>(degree);
+}
+
+std::optional<Stepper::TimeSeries> TaylorStepper::time_series() const {
+    if (span_ > longest_near) return std::nullopt;
+    return TimeSeries{step_.row(0), step_.width(), step_.order()};
 }
 
 double TaylorStepper::remainder(std::size_t contact, const Polynomial& p) const {
@@ -199,10 +199,14 @@ void TaylorStepper::add_error(std::size_t contact, const Polynomial& p, Gap& end
 
 // See Stepper. Uses the terms at the end of the step, without forming the polynomial.
 bool TaylorStepper::stays_negative(std::size_t contact) const {
+    const double span = span_, *c = &step_.event(contact, 0);
     double power = 1.0;
-    return step_.stays_negative(contact, span_, [&](int k) {
-        if (k > 0) power *= span_;
-        return step_.event(contact, k) * power;
+    return step_.stays_negative(contact, span, [&, width = step_.width()](int k) {
+        if (k > 0) {
+            power *= span;
+            c += width;
+        }
+        return *c * power;
     });
 }
 

@@ -23,6 +23,7 @@ class TaylorStepper : public Stepper {
     const State& current_state() override;
     void event_function(std::size_t contact, Polynomial& p) const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
+    std::optional<TimeSeries> time_series() const override;
     bool stays_negative(std::size_t contact) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;

@@ -9,7 +9,9 @@
 
 #include "core/systems.hpp"
 #include "model/degenerate_gap.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/simulate.hpp"
+#include "simulate/stepper.hpp"
 
 namespace achilles {
 namespace {
@@ -130,6 +132,86 @@ TEST(Domain, InfinityIsNoDomainBoundary) {
     const Trajectory trajectory = simulate(model, model->default_run());
     EXPECT_NE(trajectory.outcome.kind, Outcome::Kind::left_the_domain) << trajectory.outcome.message;
     EXPECT_NE(trajectory.outcome.kind, Outcome::Kind::end_time);
+}
+
+// ---- steps that are safe without the polynomials of their motion ----
+
+// A stepper that does not tell its series in time.
+class WithoutTimeSeries : public Stepper {
+ public:
+    explicit WithoutTimeSeries(Stepper& stepper) : stepper_(&stepper) {}
+    void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override {
+        stepper_->initialize(mode, state, gaps);
+    }
+    StepFailure do_step(double time, double longest, double first, double least) override {
+        return stepper_->do_step(time, longest, first, least);
+    }
+    StepFailure redo_step(double duration, double least) override { return stepper_->redo_step(duration, least); }
+    double current_time() const override { return stepper_->current_time(); }
+    const State& current_state() override { return stepper_->current_state(); }
+    void event_function(std::size_t contact, Polynomial& p) const override { stepper_->event_function(contact, p); }
+    std::uint32_t coefficients(std::vector<double>& all) const override { return stepper_->coefficients(all); }
+    double remainder(std::size_t contact, const Polynomial& p) const override {
+        return stepper_->remainder(contact, p);
+    }
+    void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override {
+        stepper_->add_error(contact, p, end);
+    }
+    bool is_expansion() const override { return true; }
+    long evaluations() const override { return stepper_->evaluations(); }
+
+ private:
+    Stepper* stepper_;
+};
+
+struct StepCounts {
+    int shown = 0, safe = 0, shortened = 0;
+};
+
+// Steps of a particle that passes the center at this distance. The part that is safe does not depend on whether the
+// stepper tells its series in time.
+void compare_safe_parts(const std::string& potential, double distance, double longest, StepCounts& counts) {
+    const auto model = test::typed(
+        "title = \"passage\"\n[[coordinate]]\nname = \"x\"\nstart = -1.0\nrate = 1.0\n[[coordinate]]\nname = \"y\"\n"
+        "start = 0.0\n[[parameter]]\nname = \"b\"\nvalue = 1.0\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n"
+        "potential = \"" +
+        potential + "\"\n[[constraint]]\ngap = \"x + 10\"\nrestitution = 0.5\n");
+    Run run = model->default_run();
+    run.parameters[0] = distance;
+    ContactCache surfaces(*model, run);
+    const auto stepper = make_taylor(*model, run, surfaces);
+    WithoutTimeSeries without(*stepper);
+    DomainMonitor monitor(*model, run), other(*model, run);
+    State state = run.start();
+    for (int step = 0; step < 60 && state.t < 4.0; ++step) {
+        const Contact contact = surfaces.of(0).at(state);
+        const Gap gap{contact.h, contact.hdot};
+        stepper->initialize(Mode(), state, std::span(&gap, 1));
+        ASSERT_EQ(stepper->do_step(state.t, longest, 0.0, 1e-15), StepFailure::none);
+        const double theta = monitor.safe_part(*stepper, state.t);
+        EXPECT_EQ(theta, other.safe_part(without, state.t)) << distance << " " << longest << " at " << state.t;
+        EXPECT_TRUE(other.has_motion());
+        counts.shown += !monitor.has_motion();
+        counts.safe += theta == 1.0;
+        counts.shortened += theta < 1.0;
+        if (theta < 1.0) {
+            ASSERT_EQ(stepper->redo_step(theta * stepper->current_time(), 1e-15), StepFailure::none);
+        }
+        const double t = state.t + stepper->current_time();
+        state = stepper->current_state();
+        state.t = t;
+    }
+}
+
+TEST(Domain, TheMotionInTimeShowsOnlySafeStepsToBeSafe) {
+    StepCounts counts;
+    for (const std::string potential : {"1e-9*sqrt(x^2 + (y - b)^2)", "1e-9*log(x^2 + (y - b)^2)",
+                                        "1e-9*sqrt((x + 0.1*cos(9*t))^2 + b^2)", "1e-9*exp(5*x) + 1e-9*sqrt(b + x^2)"})
+        for (const double distance : {0.01, 0.1, 0.5, 2.0})
+            for (const double longest : {0.01, 0.1, 0.3, 0.8, 3.0})
+                compare_safe_parts(potential, distance, longest, counts);
+    EXPECT_GT(counts.shown, counts.safe / 2);
+    EXPECT_GT(counts.shortened, 20);
 }
 
 }  // namespace
