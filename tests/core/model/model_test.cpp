@@ -245,6 +245,15 @@ TEST(Impacts, ADifferenceOfGapsIsJudgedByTheRoundingOfItsState) {
     }
     EXPECT_EQ(within, 2 * 110);
     EXPECT_EQ(outside, 4 * 110);
+    // The bound of a state before serves at the next five. The roundings of q shrink much more there than the bound.
+    ContactKinematics surface(*model, run);
+    for (int k = 0; k <= 24; ++k) {
+        const State state = state_at(std::exp2(-2 * k), std::exp2(-2 * k), 0.0);
+        const Contact contact = surface.at(state);
+        const bool is_near = k % 6 == 0;
+        const double value = (is_near ? 3.6 : 1e9) * surface.gap_error(state);
+        EXPECT_EQ(surface.within_gap_error(value, 4.0, contact, state), is_near) << k;
+    }
 }
 
 std::string error_of(std::string text, const std::string& from, const std::string& to) {
