@@ -156,10 +156,11 @@ class Dopri5 : public Stepper {
     std::array<Pair::Value, 5> terms(std::size_t first) const;
     double own_remainder(std::size_t contact, const Polynomial& p) const;
     double hddot_error(std::size_t contact, const Polynomial& p) const;
-    double earlier_error(std::size_t contact, const Polynomial& p) const;
+    double earlier_error(std::size_t contact, double hddot_error) const;
     bool watches_gap(std::size_t contact) const {
         return contact < contacts_ && law_of(mode_.state(contact)).watched == WatchedFunction::gap;
     }
+    bool is_gap(std::size_t contact) const { return event_rates_[contact].is_of_gap; }
     double unit(std::size_t contact) const { return event_rates_[contact].unit; }
     std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // index of its event function
     std::size_t width() const { return event(gaps_.size()); }
@@ -231,8 +232,7 @@ void Dopri5::set_rates(const Values& y, Values& dydt) const {
     to += 2 * dof_;
     for (const EventRate& rate : event_rates_) {
         const double value = *rate.output * rate.per_unit;
-        to[0] = rate.is_of_gap ? from[1] : value;
-        to[1] = rate.is_of_gap ? value : 0.0;
+        Pair::store(rate.is_of_gap ? Pair::Value{from[1], value} : Pair::Value{value, 0.0}, to);
         from += 2;
         to += 2;
     }
@@ -266,14 +266,15 @@ void Dopri5::begin_step() {
         is_evaluated_ && motion_->clock() == time_ && std::equal(y.data(), y.data() + 2 * dof_, &motion_->input(0));
     if (!is_known) evaluate_motion(y, time_);
     for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
+        const EventRate& rate = event_rates_[contact];
         const std::size_t i = event(contact);
         Gap& gap = gaps_[contact];
         if (is_continued_) {
-            gap.h = unit(contact) * to_.y[i];
-            gap.hdot = unit(contact) * to_.y[i + 1];
+            gap.h = rate.unit * to_.y[i];
+            gap.hdot = rate.unit * to_.y[i + 1];
         }
-        y[i] = (watches_gap(contact) ? gap.h : motion_->hddot(contact)) / unit(contact);
-        y[i + 1] = watches_gap(contact) ? gap.hdot / unit(contact) : 0.0;
+        y[i] = (rate.is_of_gap ? gap.h : motion_->hddot(contact)) * rate.per_unit;
+        y[i + 1] = rate.is_of_gap ? gap.hdot * rate.per_unit : 0.0;
     }
     set_rates(y, from_.dydt);
 }
@@ -372,27 +373,26 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 // The local error allowed by the error control, and as much again for the dense output, whose order is one less. In a
 // flight much shorter than such a step, at most the highest term kept.
 double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
-    double size = 0.0;
-    for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
+    const double size = std::abs(p.c[0]) + std::abs(p.c[1]) + std::abs(p.c[2]) + std::abs(p.c[3]) + std::abs(p.c[4]);
     const double allowed = 4.0 * tolerance_ * (unit(contact) + size);
-    return (watches_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
+    return (is_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
 // From the terms of p in theta = t/span: the sizes of hddot and of its rate at the start of the step.
 double Dopri5::hddot_error(std::size_t contact, const Polynomial& p) const {
-    return gaps_[contact].hddot_error(watches_gap(contact)
+    return gaps_[contact].hddot_error(is_gap(contact)
                                           ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
                                           : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
                                       unit(contact));
 }
 
-double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
-    const double error = hddot_error(contact, p);
-    return watches_gap(contact) ? gaps_[contact].error_after(span_, error) : error;
+// The error of the function from that of the state at the start of the step.
+double Dopri5::earlier_error(std::size_t contact, double hddot_error) const {
+    return is_gap(contact) ? gaps_[contact].error_after(span_, hddot_error) : hddot_error;
 }
 
 double Dopri5::remainder(std::size_t contact, const Polynomial& p) const {
-    return own_remainder(contact, p) + earlier_error(contact, p);
+    return own_remainder(contact, p) + earlier_error(contact, hddot_error(contact, p));
 }
 
 // See Stepper. By partial sums (Abel), and by twice the remainder: the function at the end of the step, with which the
@@ -408,11 +408,11 @@ bool Dopri5::stays_negative(std::size_t contact) const {
 // The errors of the gap and of its rate after a step grow by at most these bounds.
 void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const {
     const Gap& gap = gaps_[contact];
-    const double own = own_remainder(contact, p);
-    end.error = earlier_error(contact, p) + own;
+    const double own = own_remainder(contact, p), hddot = hddot_error(contact, p);
+    end.error = earlier_error(contact, hddot) + own;
     end.state_error = gap.state_error;
-    end.rate_error = gap.rate_error + hddot_error(contact, p) * span_ +
-                     std::min(4.0 * tolerance_ * (unit(contact) + std::abs(end.hdot)), own / span_);
+    end.rate_error =
+        gap.rate_error + hddot * span_ + std::min(4.0 * tolerance_ * (unit(contact) + std::abs(end.hdot)), own / span_);
 }
 
 }  // namespace
