@@ -3,7 +3,8 @@
 // The event functions are integrated with the motion under the same error control. For an open contact it is the gap
 // (h, hdot with (h, hdot)' = (hdot, hddot)), for a held one hddot (with rate h'''). Steps are therefore as short as
 // these functions require, and the gap after an impact is an increment from zero instead of a difference of large
-// numbers (theory.md 9.3).
+// numbers (theory.md 9.3). While a gap surely stays open it is not needed that exactly, because the next step starts
+// from h(q) again; steps are longer then.
 //
 // Odeint tries a step and controls its length. This file keeps the two ends with their rates, which determine the dense
 // output together with Odeint's value in the middle of the step.
@@ -72,16 +73,45 @@ struct PairAlgebra {
     }
 };
 
+// One end of a step, with the rates there.
+struct StepEnd {
+    Values y, dydt;
+};
+
+// Components that close at 0, each followed by its rate. While such a gap stays above 0 along a step, it is not needed
+// to the tolerance: its error may be a part of a lower bound of it.
+struct GapComponents {
+    // Far below 1, because the dense output is less accurate than the end of a step.
+    static constexpr double tolerated_part = 0x1p-10;
+    std::vector<std::size_t> indices;
+    Values tolerated;  // the errors tolerated along the last step, of all components
+
+    // The lower bound of a gap is that of the cubic with the values and rates at both ends, by its Bernstein
+    // coefficients.
+    void tolerate_errors(const Values& y, const Values& end, double dt) {
+        const double third = dt / 3.0;
+        for (const std::size_t i : indices) {
+            const double lowest =
+                std::min(std::min(y[i], y[i] + third * y[i + 1]), std::min(end[i], end[i] - third * end[i + 1]));
+            tolerated[i] = lowest > 0.0 ? tolerated_part * lowest : 0.0;
+            tolerated[i + 1] = tolerated[i] / dt;
+        }
+    }
+};
+
 // The largest error of a component, relative to the tolerance times 1 + |y| + |dt y'|, which is the measure of Odeint's
-// default checker.
+// default checker, and the tolerated error of a gap. Odeint asks it when the end of the step is known.
 class ErrorChecker {
  public:
-    explicit ErrorChecker(double tolerance = 1e-6) : tolerance_(tolerance) {}
+    ErrorChecker(double tolerance, const StepEnd& end, GapComponents& gaps)
+        : tolerance_(tolerance), end_(&end), gaps_(&gaps) {}
     double error(const PairAlgebra&, const Values& y, const Values& dydt, const Values& error, double dt) const {
+        gaps_->tolerate_errors(y, end_->y, dt);
         Pair::Value largest{};
         for (std::size_t i = 0; i < y.size(); i += Pair::count) {
             const Pair::Value size = size_of(Pair::load(&y[i])) + std::abs(dt) * size_of(Pair::load(&dydt[i]));
-            const Pair::Value part = size_of(Pair::load(&error[i])) / (tolerance_ + tolerance_ * size);
+            const Pair::Value allowed = tolerance_ + tolerance_ * size + Pair::load(&gaps_->tolerated[i]);
+            const Pair::Value part = size_of(Pair::load(&error[i])) / allowed;
             largest = largest < part ? part : largest;
         }
         return std::max(largest[0], largest[1]);
@@ -90,6 +120,8 @@ class ErrorChecker {
  private:
     static Pair::Value size_of(const Pair::Value& x) { return x < 0.0 ? -x : x; }
     double tolerance_;
+    const StepEnd* end_;
+    GapComponents* gaps_;
 };
 
 using Dopri5Method =
@@ -101,11 +133,6 @@ bool is_finite(const Values& values) {
     for (std::size_t i = 0; i < values.size(); i += Pair::count) sum += 0.0 * Pair::load(&values[i]);
     return sum[0] + sum[1] == 0.0;
 }
-
-// One end of a step, with the rates there.
-struct StepEnd {
-    Values y, dydt;
-};
 
 // Outputs of the motion for a coordinate.
 struct CoordinateOutputs {
@@ -124,7 +151,7 @@ class Dopri5 : public Stepper {
     Dopri5(const Model& model, const Run& run, ContactCache& surfaces)
         : dof_(static_cast<std::size_t>(model.dof())),
           tolerance_(run.options.tolerance),
-          method_(ErrorChecker(tolerance_)),
+          method_(ErrorChecker(tolerance_, to_, gap_components_)),
           model_(&model),
           parameters_(surfaces.run().parameters),
           coordinates_(dof_),
@@ -154,7 +181,7 @@ class Dopri5 : public Stepper {
     StepFailure try_step(double dt);
     StepFailure failure_here() const;
     std::array<Pair::Value, 5> terms(std::size_t first) const;
-    double own_remainder(std::size_t contact, const Polynomial& p) const;
+    double own_remainder(std::size_t contact, const Polynomial& p, double tolerated) const;
     double hddot_error(std::size_t contact, const Polynomial& p) const;
     double earlier_error(std::size_t contact, double hddot_error) const;
     bool watches_gap(std::size_t contact) const {
@@ -184,10 +211,11 @@ class Dopri5 : public Stepper {
     double time_ = 0.0;      // s, start of the step
     std::vector<Gap> gaps_;  // at the start of the step, for each event function
     GapUnits units_;
-    StepEnd from_, to_;          // ends of the step
-    State end_;                  // the state of to_, or where the next step starts
-    bool is_continued_ = false;  // the next step starts at to_
-    Values middle_;              // in the middle of the step
+    StepEnd from_, to_;             // ends of the step
+    GapComponents gap_components_;  // of the event functions
+    State end_;                     // the state of to_, or where the next step starts
+    bool is_continued_ = false;     // the next step starts at to_
+    Values middle_;                 // in the middle of the step
     long evaluations_ = 0;
 };
 
@@ -196,16 +224,25 @@ void Dopri5::choose_mode(Mode mode, std::size_t functions) {
     if (functions != gaps_.size() || motion_ == nullptr) {
         gaps_.resize(functions);
         event_rates_.resize(functions);
-        for (Values* values : {&from_.y, &from_.dydt, &to_.y, &to_.dydt, &middle_}) values->resize(width());
-        method_ = ControlledDopri5(ErrorChecker(tolerance_));  // its buffers have the size of the first state
+        for (Values* values : {&from_.y, &from_.dydt, &to_.y, &to_.dydt, &middle_, &gap_components_.tolerated})
+            values->resize(width());
+        // Its buffers have the size of the first state.
+        method_ = ControlledDopri5(ErrorChecker(tolerance_, to_, gap_components_));
     }
     motion_ = &model_->lazily(motions_, mode, parameters_);
     if (functions > contacts_) friction_ = model_->motion(mode).friction;
     is_evaluated_ = false;
     for (std::size_t i = 0; i < dof_; ++i) coordinates_[i] = {&motion_->acceleration(i), &motion_->pivot(i)};
-    for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact)
-        event_rates_[contact] = watches_gap(contact) ? EventRate{&motion_->hddot(contact), true}
-                                                     : EventRate{&motion_->jerk(forces++), false};
+    gap_components_.indices.clear();
+    std::fill(gap_components_.tolerated.begin(), gap_components_.tolerated.end(), 0.0);
+    for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact) {
+        if (watches_gap(contact)) {
+            event_rates_[contact] = {&motion_->hddot(contact), true};
+            gap_components_.indices.push_back(event(contact));
+        } else {
+            event_rates_[contact] = {&motion_->jerk(forces++), false};
+        }
+    }
 }
 
 void Dopri5::evaluate_motion(const Values& y, double time) {
@@ -370,11 +407,11 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
     return 4;
 }
 
-// The local error allowed by the error control, and as much again for the dense output, whose order is one less. In a
-// flight much shorter than such a step, at most the highest term kept.
-double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
+// The local error allowed by the error control, with what it tolerates beyond the tolerance, and as much again for the
+// dense output, whose order is one less. In a flight much shorter than such a step, at most the highest term kept.
+double Dopri5::own_remainder(std::size_t contact, const Polynomial& p, double tolerated) const {
     const double size = std::abs(p.c[0]) + std::abs(p.c[1]) + std::abs(p.c[2]) + std::abs(p.c[3]) + std::abs(p.c[4]);
-    const double allowed = 4.0 * tolerance_ * (unit(contact) + size);
+    const double allowed = 4.0 * (tolerance_ * (unit(contact) + size) + unit(contact) * tolerated);
     return (is_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
@@ -392,7 +429,8 @@ double Dopri5::earlier_error(std::size_t contact, double hddot_error) const {
 }
 
 double Dopri5::remainder(std::size_t contact, const Polynomial& p) const {
-    return own_remainder(contact, p) + earlier_error(contact, hddot_error(contact, p));
+    return own_remainder(contact, p, gap_components_.tolerated[event(contact)]) +
+           earlier_error(contact, hddot_error(contact, p));
 }
 
 // See Stepper. By partial sums (Abel), and by twice the remainder: the function at the end of the step, with which the
@@ -405,10 +443,11 @@ bool Dopri5::stays_negative(std::size_t contact) const {
     return highest < -2.0 * remainder(contact, p);
 }
 
-// The errors of the gap and of its rate after a step grow by at most these bounds.
+// The errors of the gap and of its rate after a step grow by at most these bounds. What is tolerated along the step
+// ends with it.
 void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const {
     const Gap& gap = gaps_[contact];
-    const double own = own_remainder(contact, p), hddot = hddot_error(contact, p);
+    const double own = own_remainder(contact, p, 0.0), hddot = hddot_error(contact, p);
     end.error = earlier_error(contact, hddot) + own;
     end.state_error = gap.state_error;
     end.rate_error =

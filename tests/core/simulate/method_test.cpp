@@ -73,6 +73,49 @@ TEST(Methods, Dopri5KeepsTheRatesAtTheEndsOfAStep) {
     EXPECT_LT(static_cast<double>(statistics.evaluations), 7.3 * static_cast<double>(statistics.steps));
 }
 
+// In flight the ball's motion is a polynomial, which the method integrates exactly. While the gap is far from zero, the
+// bends of the floor below do not shorten the steps, and the impacts are found all the same.
+TEST(Methods, AFloorFarBelowDoesNotShortenTheStepsOfDopri5) {
+    const auto model = test::load("wavy_ramp");
+    auto run = model->default_run();
+    run.options.method = Method::taylor;
+    const Trajectory taylor = simulate(model, run);
+    run.options.method = Method::dopri5;
+    const Trajectory dopri5 = simulate(model, run);
+    ASSERT_EQ(taylor.events.size(), dopri5.events.size());
+    for (std::size_t i = 0; i < taylor.events.size(); ++i) {
+        EXPECT_EQ(taylor.events[i].kind, dopri5.events[i].kind);
+        EXPECT_NEAR(taylor.events[i].t, dopri5.events[i].t, 1e-9);
+    }
+    EXPECT_GE(dopri5.statistics.least_gap, -1e-12);
+    EXPECT_LT(dopri5.statistics.steps, 400);
+}
+
+// What is tolerated of a gap in flight is not tolerated of the force after the contact is held.
+TEST(Methods, TheForceOfAHeldContactIsIntegratedToTheTolerance) {
+    const auto model = test::load("ball_on_sine");
+    auto run = model->default_run();
+    run.options.tolerance = 1e-8;
+    run.q << 0.5, std::sin(0.5);
+    run.v << 1.0, std::cos(0.5);
+    ContactCache surfaces(*model, run);
+    const auto first = make_dopri5(*model, run, surfaces), flown = make_dopri5(*model, run, surfaces);
+    const Gap far{1.0, 0.0}, none{};
+    flown->initialize({}, {run.q + Vector::Unit(2, 1), run.v}, std::span(&far, 1));
+    ASSERT_EQ(flown->do_step(0.0, 1e-3, 1e-3, 1e-15), StepFailure::none);
+    Polynomial p[2];
+    double remainders[2];
+    for (const int i : {0, 1}) {
+        Stepper& stepper = i == 0 ? *first : *flown;
+        stepper.initialize(Mode::holding(ContactSet::of(0)), {run.q, run.v}, std::span(&none, 1));
+        ASSERT_EQ(stepper.do_step(0.0, 1e-3, 1e-3, 1e-15), StepFailure::none);
+        stepper.event_function(0, p[i]);
+        remainders[i] = stepper.remainder(0, p[i]);
+    }
+    for (std::size_t k = 0; k <= 4; ++k) EXPECT_EQ(p[0].c[k], p[1].c[k]);
+    EXPECT_EQ(remainders[0], remainders[1]);
+}
+
 // Against 40-digit references: the error at t = 20 is rounding.
 TEST(Methods, TaylorReachesTheReferenceTo1e13) {
     for (const test::Problem& problem : test::problems) {
