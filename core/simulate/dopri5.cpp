@@ -166,6 +166,7 @@ class Dopri5 : public Stepper {
     void event_function(std::size_t contact, Polynomial& p) const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     bool stays_negative(std::size_t contact) const override;
+    bool stays_positive(std::size_t contact) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;
     bool is_expansion() const override { return false; }
@@ -441,6 +442,17 @@ bool Dopri5::stays_negative(std::size_t contact) const {
     double sum = 0.0, highest = -std::numeric_limits<double>::infinity();
     for (int k = 0; k <= p.degree; ++k) highest = std::max(highest, sum += p.c[static_cast<std::size_t>(k)]);
     return highest < -2.0 * remainder(contact, p);
+}
+
+// By the lower bound of the cubic with the values and rates at both ends (GapComponents). The polynomial differs from
+// it by its highest coefficient times (1 - theta)^2 theta^2, which is at most a sixteenth.
+bool Dopri5::stays_positive(std::size_t contact) const {
+    const double tolerated = gap_components_.tolerated[event(contact)];
+    if (!(tolerated > 0.0)) return false;
+    Polynomial p;
+    event_function(contact, p);
+    return unit(contact) * tolerated / GapComponents::tolerated_part >
+           2.0 * remainder(contact, p) + std::abs(p.c[4]) / 16.0;
 }
 
 // The errors of the gap and of its rate after a step grow by at most these bounds. What is tolerated along the step

@@ -152,7 +152,7 @@ bool EventStepper::is_last() const { return flow_->end_time() >= request_->until
 
 // Forgets what was computed for the last step, which is replaced.
 void EventStepper::forget_step() {
-    known_ = known_at_end_ = {};
+    known_ = known_at_end_ = clear_ = {};
     is_projected_ = false;
 }
 

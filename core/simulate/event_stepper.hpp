@@ -175,6 +175,7 @@ class EventStepper {
     std::vector<Gap> gaps_;          // at the start of a segment
     std::vector<Polynomial> along_;  // gap polynomials of the contacts in known_, for the current step
     ContactSet known_;
+    ContactSet clear_;             // contacts whose gap is known to stay positive along the current step
     std::vector<Contact> at_end_;  // contacts at the end of the step, of those in known_at_end_
     ContactSet known_at_end_;
     // The end of the step, projected onto the surfaces of the held contacts, and their smallest gap; nullopt if that

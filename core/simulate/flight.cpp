@@ -45,7 +45,12 @@ void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     }
 }
 
+// A gap that surely stays open is not searched for a zero, and its polynomial is not corrected.
 FirstCrossing EventStepper::gap_descent() {
+    if (flow_->stays_positive(contact_)) {
+        clear_ = clear_.with(contact_);
+        return {};
+    }
     const Polynomial& h = gap_along(contact_);
     return first_descent(h, start_of(contact_).multiplicity, flow_->remainder(contact_, h));
 }
@@ -94,12 +99,13 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
             result_.starts[i] = {{0.0, 0.0}, 1, false};
             continue;
         }
-        const Polynomial& h = gap_along(i);
-        ContactKinematics& surface = surfaces_->of(i);
+        const bool is_clear = clear_.contains(i);  // then h(q) is accurate enough
+        if (is_clear) flow_->event_function(i, along_[i]);
+        const Polynomial& h = is_clear ? along_[i] : gap_along(i);
         const Contact& end = contact_at_end(i);
-        const Polynomial::EndValue reached = h.at_end();
+        const Polynomial::EndValue reached = is_clear ? Polynomial::EndValue{} : h.at_end();
         Gap gap{reached.value, reached.slope / flow_->duration()};
-        if (!surface.within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
+        if (is_clear || !surfaces_->of(i).within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
             if (end.h < 0.0 && !is_inactive(i)) {
                 contact_ = i;
                 return false;

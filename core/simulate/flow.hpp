@@ -51,6 +51,7 @@ class Flow {
     // (Stepper).
     void event_function(std::size_t contact, Polynomial& p) const { stepper_->event_function(contact, p); }
     bool stays_negative(std::size_t contact) const { return stepper_->stays_negative(contact); }
+    bool stays_positive(std::size_t contact) const { return stepper_->stays_positive(contact); }
     bool is_expansion() const { return stepper_->is_expansion(); }
     double remainder(std::size_t contact, const Polynomial& p) const { return stepper_->remainder(contact, p); }
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const { stepper_->add_error(contact, p, end); }

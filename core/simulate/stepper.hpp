@@ -61,6 +61,8 @@ class Stepper {
     // Whether the event function is known to stay below zero along the last step by more than its remainder. False
     // means unknown.
     virtual bool stays_negative(std::size_t) const { return false; }
+    // The same above zero, of a gap.
+    virtual bool stays_positive(std::size_t) const { return false; }
     // Estimated bound on the difference from the exact solution that starts at the same state.
     virtual double remainder(std::size_t contact, const Polynomial& event_function) const = 0;
     // Adds the errors of this step to the error bounds of a contact's gap at its end.

@@ -91,6 +91,42 @@ TEST(Methods, AFloorFarBelowDoesNotShortenTheStepsOfDopri5) {
     EXPECT_LT(dopri5.statistics.steps, 400);
 }
 
+// The gap of a ball that flies over a crest is known to stay positive if the crest is far below, not if it is near.
+TEST(Methods, AGapThatComesNearZeroIsNotKnownToStayPositive) {
+    const auto model = test::load("ball_on_sine");
+    auto run = model->default_run();
+    run.options.tolerance = 1e-8;
+    run.q << std::acos(-1.0) / 2 - 0.005, 0.0;
+    run.v << 1.0, 0.0;
+    for (const double height : {1.0, 1e-2, 1e-5, 1e-12, -1e-3}) {
+        run.q[1] = std::sin(run.q[0]) + height;
+        ContactCache surfaces(*model, run);
+        const auto stepper = make_dopri5(*model, run, surfaces);
+        const Gap gap{height, -std::cos(run.q[0])};
+        stepper->initialize({}, {run.q, run.v}, std::span(&gap, 1));
+        ASSERT_EQ(stepper->do_step(0.0, 0.01, 0.01, 1e-15), StepFailure::none);
+        EXPECT_EQ(stepper->stays_positive(0), height >= 1e-2) << height;
+    }
+}
+
+// Nor is a gap smaller than its error from the steps before.
+TEST(Methods, AGapWithinItsErrorIsNotKnownToStayPositive) {
+    const auto model = test::drop();
+    auto run = model->default_run();
+    run.options.method = Method::dopri5;
+    run.parameters[0] = 1e-11;
+    for (const double height : {1e-3, 1e-7}) {
+        run.q[0] = height;
+        run.v[0] = 0.0;
+        ContactCache surfaces(*model, run);
+        const auto stepper = make_dopri5(*model, run, surfaces);
+        const Gap gap{height, 0.0, 1e-6};
+        stepper->initialize({}, {run.q, run.v}, std::span(&gap, 1));
+        ASSERT_EQ(stepper->do_step(0.0, 0.1, 0.1, 1e-15), StepFailure::none);
+        EXPECT_EQ(stepper->stays_positive(0), height == 1e-3) << height;
+    }
+}
+
 // What is tolerated of a gap in flight is not tolerated of the force after the contact is held.
 TEST(Methods, TheForceOfAHeldContactIsIntegratedToTheTolerance) {
     const auto model = test::load("ball_on_sine");
