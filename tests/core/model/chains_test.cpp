@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <numbers>
@@ -175,14 +174,23 @@ TEST(Chains, SimplifyAsIfEliminated) {
                 5.0 / 18.0, 1e-15);
 }
 
+// Processor time, to which other programs of the machine add nothing.
+class Stopwatch {
+ public:
+    double seconds() const { return static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC; }
+
+ private:
+    std::clock_t begin_ = std::clock();
+};
+
 TEST(Chains, OfTwelveLinksAreDerivedInSeconds) {
     for (const Angles angles : {Angles::absolute, Angles::relative}) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         const auto model = free_chain(12, angles);
         model->motion({});
         model->motion(Mode::holding(ContactSet::of(0)));
         model->bouncing();
-        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(max_seconds));
+        EXPECT_LT(watch.seconds(), max_seconds);
         EXPECT_LT(4 * model->equations().energy.graph().size(), 6000000u);
     }
 }
@@ -190,31 +198,33 @@ TEST(Chains, OfTwelveLinksAreDerivedInSeconds) {
 TEST(Chains, OfEightLinksRunInLessThanASecond) {
     for (const Angles angles : {Angles::absolute, Angles::relative}) {
         const auto model = free_chain(8, angles);
+        const Stopwatch watch;
         const Trajectory run = simulate(model, model->default_run());
         EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time);
 #ifndef __SANITIZE_ADDRESS__
-        EXPECT_LT(run.statistics.seconds, 1.0);
+        EXPECT_LT(watch.seconds(), 1.0);
 #endif
         EXPECT_LT(run.statistics.energy_drift, 1e-10);
     }
 }
 
 TEST(ChainsOfBodies, OfTwelveLinksAreDerivedInSeconds) {
-    const std::clock_t begin = std::clock();
+    const Stopwatch watch;
     const auto model = test::typed(chain_of_bodies(12, 12, 1));
     model->motion({});
     model->motion(Mode::holding(ContactSet::of(0)));
     model->bouncing();
-    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, max_seconds);
+    EXPECT_LT(watch.seconds(), max_seconds);
     EXPECT_LT(4 * model->equations().energy.graph().size(), 6000000u);
 }
 
 TEST(ChainsOfBodies, MoveAsTheTypedChainDoesInLessThanASecond) {
     const auto model = test::typed(chain_of_bodies(8, 8, 20));
+    const Stopwatch watch;
     const Trajectory run = simulate(model, model->default_run());
     EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time);
 #ifndef __SANITIZE_ADDRESS__
-    EXPECT_LT(run.statistics.seconds, 1.0);
+    EXPECT_LT(watch.seconds(), 1.0);
 #endif
     const auto typed = test::typed(chain(8, Angles::relative, 10, 2));
     const auto short_run = test::typed(chain_of_bodies(8, 8, 2));
@@ -226,7 +236,7 @@ TEST(ChainsOfBodies, MoveAsTheTypedChainDoesInLessThanASecond) {
 
 // Too many coordinates, and equations that are too large, end with a message within seconds.
 TEST(ChainsOfBodies, OfFortyLinksAreRefused) {
-    const std::clock_t begin = std::clock();
+    const Stopwatch watch;
     const std::string forty = test::told(chain_of_bodies(40, 40, 1));
     EXPECT_EQ(forty.find("f.toml:18:14: more than 16 coordinates\n"), 0U) << forty;
     const std::string large = test::told(chain_of_bodies(40, 16, 1, true));
@@ -235,7 +245,7 @@ TEST(ChainsOfBodies, OfFortyLinksAreRefused) {
     const std::string kinetic = test::told(chain_of_bodies(40, 16, 1));
     EXPECT_NE(kinetic.find("the kinetic energy of the bodies is too large: it takes more than"), kinetic.npos)
         << kinetic;
-    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, max_seconds);
+    EXPECT_LT(watch.seconds(), max_seconds);
 }
 
 // The same motion in both coordinates, with impacts, certified Zeno points and contact.
