@@ -32,7 +32,7 @@ class DomainMonitor {
     // A distance along a step as far as its series is expanded.
     struct PartialSum {
         double start, sum, least;    // at the start of the step, at its end, and the smallest partial sum
-        const double* output;        // of the series: its current order
+        const double* output;        // where the series leaves the order that it has reached
         std::array<double, 4> last;  // sizes of the last terms at the end: symmetry may make three in a row 0
         double tail() const { return (last[0] + last[1]) + (last[2] + last[3]); }
     };

@@ -213,7 +213,7 @@ class Dopri5 : public Stepper {
     std::vector<Gap> gaps_;  // at the start of the step, for each event function
     GapUnits units_;
     StepEnd from_, to_;             // ends of the step
-    GapComponents gap_components_;  // of the event functions
+    GapComponents gap_components_;  // where the gaps stand in y
     State end_;                     // the state of to_, or where the next step starts
     bool is_continued_ = false;     // the next step starts at to_
     Values middle_;                 // in the middle of the step
@@ -444,8 +444,8 @@ bool Dopri5::stays_negative(std::size_t contact) const {
     return highest < -2.0 * remainder(contact, p);
 }
 
-// By the lower bound of the cubic with the values and rates at both ends (GapComponents). The polynomial differs from
-// it by its highest coefficient times (1 - theta)^2 theta^2, which is at most a sixteenth.
+// GapComponents bounds the cubic with the values and rates at both ends from below. The polynomial differs from this
+// cubic by its highest coefficient times (1 - theta)^2 theta^2, and that factor is at most 1/16.
 bool Dopri5::stays_positive(std::size_t contact) const {
     const double tolerated = gap_components_.tolerated[event(contact)];
     if (!(tolerated > 0.0)) return false;

@@ -151,7 +151,7 @@ std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& pow
         }
     };
     std::array<Sum, 2> sums{};
-    const double* const output[] = {&power.output(0), &power.output(outputs - 1)};  // of every order
+    const double* const output[] = {&power.output(0), &power.output(outputs - 1)};  // the same for all orders
     double factor = theta;
     for (std::size_t i = 0; i < outputs; ++i) sums[i].begin(power.start(i) * theta);
     const auto are_below = [&](double part) {

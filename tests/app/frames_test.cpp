@@ -257,7 +257,7 @@ class Drawing161 {
         fs::create_directory(folder.path() / "film");
         const int watch = ::inotify_init1(IN_CLOEXEC);
         ::inotify_add_watch(watch, (folder.path() / "film").c_str(), IN_MOVED_TO);
-        // With little priority, so that it has not finished when a test on a busy machine goes on.
+        // At low priority the drawing cannot finish before the test stops it, even on a busy machine.
         const std::string command = "cd '" + folder.path().string() +
                                     "' && exec nice -n 19 '" ACHILLES_BINARY_DIR "/achilles' " + film161 + " 2>err";
         id_ = ::fork();

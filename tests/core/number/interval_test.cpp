@@ -111,7 +111,7 @@ TEST(Interval, AnglesClearOfMultiplesOfPiAreFoundRoughly) {
     for (int i = 0; i < 40000; ++i) {
         const double shift = i % 2 == 0 ? 0.0 : 0.5;
         const double turns = std::round(draw.uniform(-1.0, 1.0) * std::exp2(draw.uniform(0.0, 38.0))) + shift;
-        const double size = std::exp2(draw.uniform(-50.0, 1.0));  // of the distance from the multiple
+        const double size = std::exp2(draw.uniform(-50.0, 1.0));  // how far from the multiple it may start
         const double from = 3.141592653589793 * turns + draw.uniform(-size, size);
         const Interval a(from, from + std::exp2(draw.uniform(-50.0, 2.0)));
         const bool is_clear = rounding::is_clear_of_multiples(a, shift);
