@@ -1,6 +1,7 @@
 #include "algebra/multinomial.hpp"
 
 #include <algorithm>
+#include <compare>
 
 namespace achilles {
 
@@ -12,11 +13,12 @@ constexpr unsigned max_coefficient_bits = 4096;
 
 Monomial product(const Monomial& a, const Monomial& b) {
     Monomial result;
-    for (std::size_t i = 0; i < max_atoms; ++i) {
-        const int sum = a[i] + b[i];
-        if (sum > 255) throw SimplificationLimit("a power beyond 255");
-        result[i] = static_cast<std::uint8_t>(sum);
+    std::uint8_t is_over = 0;
+    for (std::size_t i = 0; i < max_atoms; ++i) {  // without a branch, so that it is compiled into vectors
+        result[i] = static_cast<std::uint8_t>(a[i] + b[i]);
+        is_over = static_cast<std::uint8_t>(is_over | (result[i] < a[i] ? 1 : 0));
     }
+    if (is_over != 0) throw SimplificationLimit("a power beyond 255");
     return result;
 }
 
@@ -29,11 +31,25 @@ std::optional<Monomial> ratio(const Monomial& a, const Monomial& b) {
     return result;
 }
 
+// a + b, or a - b.
 Multinomial merged(const Multinomial& a, const Multinomial& b, bool minus) {
-    std::vector<Term> sum = a.terms();
-    for (const Term& term : b.terms())
-        sum.push_back({term.powers, minus ? Integer(-term.coefficient) : term.coefficient});
-    return Multinomial(std::move(sum));
+    std::vector<Term> sum;
+    sum.reserve(a.terms().size() + b.terms().size());
+    auto x = a.terms().begin(), y = b.terms().begin();
+    while (x != a.terms().end() || y != b.terms().end()) {
+        const auto order = x == a.terms().end()   ? std::strong_ordering::less
+                           : y == b.terms().end() ? std::strong_ordering::greater
+                                                  : x->powers <=> y->powers;
+        if (order > 0) {
+            sum.push_back(*x++);
+            continue;
+        }
+        Term term{y->powers, minus ? Integer(-y->coefficient) : y->coefficient};
+        ++y;
+        if (order == 0) term.coefficient += (x++)->coefficient;
+        if (term.coefficient != 0) sum.push_back(std::move(term));
+    }
+    return Multinomial::of_sorted(std::move(sum));
 }
 
 }  // namespace
@@ -55,18 +71,26 @@ Multinomial Multinomial::atom(std::size_t index) {
 
 Multinomial::Multinomial(std::vector<Term> terms) {
     std::sort(terms.begin(), terms.end(), [](const Term& x, const Term& y) { return x.powers > y.powers; });
+    std::vector<Term> sum;
     for (Term& term : terms) {
-        if (!terms_.empty() && terms_.back().powers == term.powers)
-            terms_.back().coefficient += term.coefficient;
+        if (!sum.empty() && sum.back().powers == term.powers)
+            sum.back().coefficient += term.coefficient;
         else {
-            if (!terms_.empty() && terms_.back().coefficient == 0) terms_.pop_back();
-            terms_.push_back(std::move(term));
+            if (!sum.empty() && sum.back().coefficient == 0) sum.pop_back();
+            sum.push_back(std::move(term));
         }
     }
-    if (!terms_.empty() && terms_.back().coefficient == 0) terms_.pop_back();
-    for (const Term& term : terms_)
+    if (!sum.empty() && sum.back().coefficient == 0) sum.pop_back();
+    *this = of_sorted(std::move(sum));
+}
+
+Multinomial Multinomial::of_sorted(std::vector<Term> terms) {
+    for (const Term& term : terms)
         if (msb(abs(term.coefficient)) > max_coefficient_bits)
             throw SimplificationLimit("a coefficient of too many digits");
+    Multinomial result;
+    result.terms_ = std::move(terms);
+    return result;
 }
 
 bool Multinomial::is_number() const {
@@ -123,11 +147,14 @@ Multinomial operator+(const Multinomial& a, const Multinomial& b) { return merge
 Multinomial operator-(const Multinomial& a, const Multinomial& b) { return merged(a, b, true); }
 Multinomial operator-(const Multinomial& a) { return times(a, Term{Monomial{}, -1}); }
 
+// The order of terms is that of their products with one term.
 Multinomial times(const Multinomial& a, const Term& factor) {
+    if (factor.coefficient == 0) return {};
     std::vector<Term> terms;
+    terms.reserve(a.terms().size());
     for (const Term& term : a.terms())
         terms.push_back({product(term.powers, factor.powers), Integer(term.coefficient * factor.coefficient)});
-    return Multinomial(std::move(terms));
+    return Multinomial::of_sorted(std::move(terms));
 }
 
 Multinomial times(const Multinomial& a, const Multinomial& b, Work& work) {
@@ -147,14 +174,14 @@ Multinomial power(const Multinomial& a, int exponent, Work& work) {
 }
 
 Multinomial derivative(const Multinomial& a, std::size_t atom) {
-    std::vector<Term> terms;
+    std::vector<Term> terms;  // their order is unchanged when all powers of one atom decrease by one
     for (const Term& term : a.terms()) {
         if (term.powers[atom] == 0) continue;
         Term slope{term.powers, Integer(term.coefficient * term.powers[atom])};
         --slope.powers[atom];
         terms.push_back(slope);
     }
-    return Multinomial(std::move(terms));
+    return Multinomial::of_sorted(std::move(terms));
 }
 
 std::optional<Multinomial> divide(const Multinomial& a, const Multinomial& b, Work& work) {
@@ -201,45 +228,66 @@ std::uint64_t power_mod(std::uint64_t base, std::uint64_t exponent) {
     return result;
 }
 
-// Powers of the values at which the other atoms are evaluated, which are arbitrary fixed numbers.
-using PowersOfValues = std::array<std::array<std::uint32_t, 256>, max_atoms>;
+// Powers of fixed, arbitrary values of the atoms, and of the inverses of these values.
+struct PowersOfValues {
+    std::array<std::array<std::uint32_t, 256>, max_atoms> of_value{}, of_inverse{};
+};
 const PowersOfValues& powers_of_values() {
     static const PowersOfValues all = [] {
-        PowersOfValues powers{};
+        const auto fill = [](std::array<std::uint32_t, 256>& powers, std::uint64_t base) {
+            std::uint64_t power = 1;
+            for (std::uint32_t& place : powers) {
+                place = static_cast<std::uint32_t>(power);
+                power = power * base % prime;
+            }
+        };
+        PowersOfValues powers;
         for (std::size_t atom = 0; atom < max_atoms; ++atom) {
             const std::uint64_t value = (0x9E3779B97F4A7C15ULL * (atom + 3) >> 20) % prime;
-            std::uint64_t power = 1;
-            for (std::uint32_t& place : powers[atom]) {
-                place = static_cast<std::uint32_t>(power);
-                power = power * value % prime;
-            }
+            fill(powers.of_value[atom], value);
+            fill(powers.of_inverse[atom], power_mod(value, prime - 2));
         }
         return powers;
     }();
     return all;
 }
 
-// The polynomial in one atom modulo the prime, with the other atoms at fixed values; ascending powers.
-std::vector<std::uint64_t> image(const Multinomial& a, std::size_t atom) {
-    std::vector<std::uint64_t> result(static_cast<std::size_t>(a.degree(atom)) + 1, 0);
-    const PowersOfValues& powers = powers_of_values();
-    for (const Term& term : a.terms()) {
-        Integer residue = term.coefficient % prime;
-        if (residue < 0) residue += prime;
-        auto value = residue.convert_to<std::uint64_t>();
-        for (std::size_t i = 0; i < max_atoms; ++i)
-            if (i != atom && term.powers[i] > 0) value = value * powers[i][term.powers[i]] % prime;
-        std::uint64_t& place = result[term.powers[atom]];
-        place = (place + value) % prime;
+// The images of a polynomial modulo the prime, each a polynomial in one atom, with the other atoms at fixed values.
+class Images {
+ public:
+    // Evaluates each term with all atoms at their values. The polynomial must outlive this object.
+    explicit Images(const Multinomial& a) : polynomial_(&a) {
+        const std::vector<std::size_t> atoms = a.atoms();
+        values_.reserve(a.terms().size());
+        for (const Term& term : a.terms()) {
+            Integer residue = term.coefficient % prime;
+            if (residue < 0) residue += prime;
+            auto value = residue.convert_to<std::uint64_t>();
+            for (const std::size_t i : atoms)
+                if (term.powers[i] > 0) value = value * powers_of_values().of_value[i][term.powers[i]] % prime;
+            values_.push_back(value);
+        }
     }
-    return result;
-}
+    // The coefficients of the image in one atom, by ascending powers.
+    std::vector<std::uint64_t> in(std::size_t atom) const {
+        std::vector<std::uint64_t> result(static_cast<std::size_t>(polynomial_->degree(atom)) + 1, 0);
+        const auto& inverse = powers_of_values().of_inverse[atom];
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            const std::size_t power = polynomial_->terms()[i].powers[atom];
+            result[power] = (result[power] + values_[i] * inverse[power]) % prime;
+        }
+        return result;
+    }
 
-// Upper bound on the degree of gcd(a, b) in an atom: that of the gcd of the images. If an image has a lower degree than
-// its polynomial, the bound is the smaller degree of a and b.
-int degree_bound(const Multinomial& a, const Multinomial& b, std::size_t atom) {
-    std::vector<std::uint64_t> x = image(a, atom), y = image(b, atom);
-    if (x.back() == 0 || y.back() == 0) return std::min(a.degree(atom), b.degree(atom));
+ private:
+    const Multinomial* polynomial_;
+    std::vector<std::uint64_t> values_;  // of the terms
+};
+
+// Upper bound on the degree of the gcd of two polynomials in an atom: that of the gcd of their images x and y. If an
+// image has a lower degree than its polynomial, the bound is the smaller degree of the two polynomials.
+int degree_bound(std::vector<std::uint64_t> x, std::vector<std::uint64_t> y) {
+    if (x.back() == 0 || y.back() == 0) return static_cast<int>(std::min(x.size(), y.size())) - 1;
     while (true) {
         if (x.size() < y.size()) std::swap(x, y);
         // Subtracts multiples of y until x is shorter than y.
@@ -267,7 +315,7 @@ Multinomial stripped(const Multinomial& a) {
         for (std::size_t i = 0; i < max_atoms; ++i)
             term.powers[i] = static_cast<std::uint8_t>(term.powers[i] - powers[i]);
     }
-    return positive(Multinomial(std::move(terms)));
+    return positive(Multinomial::of_sorted(std::move(terms)));
 }
 
 // Pseudo-remainder of a divided by b as polynomials in an atom: a is multiplied by the leading coefficient of b as
@@ -323,9 +371,10 @@ Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     std::vector<std::size_t> atoms = a.atoms();
     for (const std::size_t atom : b.atoms())
         if (a.degree(atom) == 0) atoms.push_back(atom);
+    const Images images_a(a), images_b(b);
     for (const std::size_t atom : atoms) {
         const int in_a = a.degree(atom), in_b = b.degree(atom);
-        const int bound = in_a == 0 || in_b == 0 ? 0 : degree_bound(a, b, atom);
+        const int bound = in_a == 0 || in_b == 0 ? 0 : degree_bound(images_a.in(atom), images_b.in(atom));
         if (bound == 0) {
             absent = atom;
         } else {

@@ -44,6 +44,8 @@ class Multinomial {
     static Multinomial atom(std::size_t index);
     // The sum of the terms, which may repeat and be in any order.
     explicit Multinomial(std::vector<Term> terms);
+    // The same for distinct, nonzero terms, the highest first.
+    static Multinomial of_sorted(std::vector<Term> terms);
 
     const std::vector<Term>& terms() const { return terms_; }  // distinct, nonzero, the highest first
     bool is_zero() const { return terms_.empty(); }

@@ -31,6 +31,11 @@ std::uint64_t hash(const Rational& value) {
     return std::hash<Rational>()(value) * 0x9E3779B97F4A7C15ULL;  // the low bits select the entry
 }
 
+// Boost compares rationals by long division, even for equality.
+bool same(const Rational& x, const Rational& y) {
+    return numerator(x) == numerator(y) && denominator(x) == denominator(y);
+}
+
 // Size in bits of the numerator and the denominator together.
 std::size_t bits(const Rational& value) {
     return value.is_zero() ? 0 : msb(abs(numerator(value))) + msb(denominator(value)) + 2;
@@ -75,7 +80,7 @@ std::uint32_t Graph::Table::intern(const Rational& value) {
     if (bits_in_all > max_bits_in_all)
         throw ExpressionTooLarge(fmt::format("the exact numbers have more than {} bits in total", max_bits_in_all));
     number_ids.room(numbers.size(), [&](std::uint32_t id) { return hash(numbers[id]); });
-    std::uint32_t& id = number_ids.find(hash(value), [&](std::uint32_t other) { return numbers[other] == value; });
+    std::uint32_t& id = number_ids.find(hash(value), [&](std::uint32_t other) { return same(numbers[other], value); });
     if (id == IdSet::none) {
         const auto next = static_cast<std::uint32_t>(numbers.size());
         number_nodes.push_back(intern(Node{Operation::number, next, 0, 0}));

@@ -11,6 +11,7 @@ namespace achilles {
 namespace {
 
 using Op = Operation;
+using boost::multiprecision::denominator, boost::multiprecision::numerator;
 
 Expression binary(Op operation, Expression a, Expression b) {
     return Builder::make(a.graph(), Graph::Node{operation, a.id(), b.id(), 0});
@@ -39,11 +40,14 @@ bool has_factor(Expression e) {
     return Builder::is(e, Op::negate) || (Builder::is(e, Op::multiply) && Builder::first(e).is_number());
 }
 
+// Compared by parts: Boost compares rationals by long division, which would take two fifths of a derivation.
+bool is(const Rational& value, int whole) { return denominator(value) == 1 && numerator(value) == whole; }
+
 Expression scaled(const Rational& factor, Expression rest) {
-    if (factor == 0) return number(rest, 0);
+    if (factor.is_zero()) return number(rest, 0);
     if (rest.is_number()) return number(rest, Rational(factor * Builder::value(rest)));
-    if (factor == 1) return rest;
-    if (factor == -1) return unary(Op::negate, rest);
+    if (is(factor, 1)) return rest;
+    if (is(factor, -1)) return unary(Op::negate, rest);
     return binary(Op::multiply, number(rest, factor), rest);
 }
 
@@ -56,7 +60,6 @@ std::pair<Expression, int> as_power(Expression e) {
 // Folds a power exactly only while the result is small; nested powers would otherwise fill the memory with digits.
 bool can_fold(const Rational& base, int exponent) {
     constexpr std::size_t max_bits = 4096;
-    using boost::multiprecision::denominator, boost::multiprecision::numerator;
     const auto bits = msb(abs(numerator(base))) + msb(denominator(base)) + 2;
     return bits * static_cast<std::size_t>(std::abs(static_cast<long>(exponent))) <= max_bits;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "certify/truncation.hpp"
 #include "contacts/impact_law.hpp"
 #include "number/dense.hpp"
 #include "sensitivity/chain.hpp"

@@ -5,6 +5,8 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
+#include "simulate/contact_cache.hpp"
+
 namespace achilles {
 
 Flow::Flow(const Model& model, const Run& run, ContactCache& surfaces)

@@ -37,6 +37,40 @@ TEST(Multinomial, KeepsNoTermTwiceAndNoZero) {
     EXPECT_FALSE(divide(power(x(), 2, work) + n(1), x() + n(1), work));
 }
 
+// Sums and multiples keep their terms in order without sorting them.
+TEST(Multinomial, SumsAndMultiplesAreThoseOfAllTerms) {
+    std::mt19937 random(11);
+    for (int trial = 0; trial < 200; ++trial) {
+        const Multinomial a = random_polynomial(random), b = random_polynomial(random);
+        std::vector<Multinomial::Term> sum = a.terms(), difference = a.terms(), multiple;
+        for (Multinomial::Term term : b.terms()) {
+            sum.push_back(term);
+            term.coefficient = -term.coefficient;
+            difference.push_back(term);
+        }
+        Multinomial::Term factor{{}, -3};
+        factor.powers[1] = 2;
+        for (Multinomial::Term term : a.terms()) {
+            term.powers[1] = static_cast<std::uint8_t>(term.powers[1] + 2);
+            term.coefficient *= -3;
+            multiple.push_back(term);
+        }
+        ASSERT_EQ(a + b, Multinomial(sum)) << trial;
+        ASSERT_EQ(a - b, Multinomial(difference)) << trial;
+        ASSERT_EQ(times(a, factor), Multinomial(multiple)) << trial;
+    }
+}
+
+TEST(Multinomial, PowersHaveALimit) {
+    Multinomial::Term high{{}, 1};
+    high.powers[47] = 250;
+    const Multinomial a(std::vector{high});
+    high.powers[47] = 5;
+    EXPECT_EQ(times(a, high).degree(47), 255);
+    high.powers[47] = 6;
+    EXPECT_THROW(times(a, high), SimplificationLimit);
+}
+
 TEST(Multinomial, DivisorsHoldBothAndNothingIsLeftInCommon) {
     std::mt19937 random(7);
     for (int trial = 0; trial < 500; ++trial) {
