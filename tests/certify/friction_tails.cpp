@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <optional>
 #include <random>
 #include <vector>
 
+#include "certify/dual.hpp"
 #include "certify/truncation.hpp"
 #include "model/read_system.hpp"
 #include "simulate/contact_cache.hpp"
@@ -18,7 +18,7 @@ namespace achilles::test {
 
 namespace {
 
-using Quad = boost::multiprecision::cpp_bin_float_quad;
+using Quad = Real;
 using Triple = std::array<Quad, 3>;
 
 Triple operator+(const Triple& a, const Triple& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
