@@ -228,31 +228,26 @@ std::uint64_t power_mod(std::uint64_t base, std::uint64_t exponent) {
     return result;
 }
 
-// Powers of fixed, arbitrary values of the atoms, and of the inverses of these values.
-struct PowersOfValues {
-    std::array<std::array<std::uint32_t, 256>, max_atoms> of_value{}, of_inverse{};
-};
+// Powers of fixed, arbitrary values of the atoms.
+using PowersOfValues = std::array<std::array<std::uint32_t, 256>, max_atoms>;
 const PowersOfValues& powers_of_values() {
     static const PowersOfValues all = [] {
-        const auto fill = [](std::array<std::uint32_t, 256>& powers, std::uint64_t base) {
-            std::uint64_t power = 1;
-            for (std::uint32_t& place : powers) {
-                place = static_cast<std::uint32_t>(power);
-                power = power * base % prime;
-            }
-        };
-        PowersOfValues powers;
+        PowersOfValues powers{};
         for (std::size_t atom = 0; atom < max_atoms; ++atom) {
             const std::uint64_t value = (0x9E3779B97F4A7C15ULL * (atom + 3) >> 20) % prime;
-            fill(powers.of_value[atom], value);
-            fill(powers.of_inverse[atom], power_mod(value, prime - 2));
+            std::uint64_t power = 1;
+            for (std::uint32_t& place : powers[atom]) {
+                place = static_cast<std::uint32_t>(power);
+                power = power * value % prime;
+            }
         }
         return powers;
     }();
     return all;
 }
 
-// The images of a polynomial modulo the prime, each a polynomial in one atom, with the other atoms at fixed values.
+// The images of a polynomial modulo the prime, each a polynomial in one atom, with the other atoms at fixed values. The
+// atom itself is multiplied by its value, which changes no degree of a gcd, so that all images take the same products.
 class Images {
  public:
     // Evaluates each term with all atoms at their values. The polynomial must outlive this object.
@@ -264,17 +259,16 @@ class Images {
             if (residue < 0) residue += prime;
             auto value = residue.convert_to<std::uint64_t>();
             for (const std::size_t i : atoms)
-                if (term.powers[i] > 0) value = value * powers_of_values().of_value[i][term.powers[i]] % prime;
+                if (term.powers[i] > 0) value = value * powers_of_values()[i][term.powers[i]] % prime;
             values_.push_back(value);
         }
     }
     // The coefficients of the image in one atom, by ascending powers.
     std::vector<std::uint64_t> in(std::size_t atom) const {
         std::vector<std::uint64_t> result(static_cast<std::size_t>(polynomial_->degree(atom)) + 1, 0);
-        const auto& inverse = powers_of_values().of_inverse[atom];
         for (std::size_t i = 0; i < values_.size(); ++i) {
-            const std::size_t power = polynomial_->terms()[i].powers[atom];
-            result[power] = (result[power] + values_[i] * inverse[power]) % prime;
+            std::uint64_t& place = result[polynomial_->terms()[i].powers[atom]];
+            place = (place + values_[i]) % prime;
         }
         return result;
     }
