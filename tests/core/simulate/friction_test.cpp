@@ -198,6 +198,28 @@ TEST_P(Friction, BreaksLooseFromTheConeOfRest) {
     EXPECT_NEAR(run.end.v[0], 1.0 - std::cos(start) + 0.25 * (1.0 - start), accuracy(GetParam()));
 }
 
+// A block that slides up a slope of 0.5 comes to rest in the cone of rest, which is wider than that of sliding: it stays.
+TEST_P(Friction, ComesToRestInTheConeOfRest) {
+    const auto run = run_of(block(-0.5, 1.0, R"(slip = "x'", friction = 0.3, static_friction = 0.7)"), 10.0, GetParam());
+    ASSERT_EQ(run.events.size(), 1u);
+    EXPECT_EQ(run.events[0].kind, Kind::stick);
+    EXPECT_NEAR(run.events[0].t, 1.25, accuracy(GetParam()));
+    EXPECT_NEAR(run.end.q[0], 0.625, accuracy(GetParam()));
+    EXPECT_EQ(run.end.v[0], 0.0);
+}
+
+// A wheel that rolls to and fro in a bowl: its point of contact stays at rest within the rounding of a step.
+TEST_P(Friction, RollsWithoutDrift) {
+    const auto run = run_of(R"-(coordinate = [{name = "x", start = 1}, {name = "y", start = 0.2}, {name = "phi"}]
+lagrangian.kinetic = "(x'^2 + y'^2 + 2/5*phi'^2)/2"
+lagrangian.potential = "y"
+constraint = [{gap = "y - 0.2*x^2", restitution = 0, slip = "x' + 0.4*x*y' + phi'", friction = 5}]
+)-",
+                            100.0, GetParam());
+    EXPECT_TRUE(run.events.empty());
+    EXPECT_LT(std::abs(run.end.v[0] + 0.4 * run.end.q[0] * run.end.v[1] + run.end.v[2]), 1e-14);
+}
+
 // A point that bounces on a slope (theory-friction.md 3): with alpha = 0.3 every impact sticks, with
 // 0.45 only the first.
 TEST_P(Friction, SticksOrSlidesAtImpacts) {
