@@ -200,7 +200,8 @@ TEST_P(Friction, BreaksLooseFromTheConeOfRest) {
 
 // A block that slides up a slope of 0.5 comes to rest in the cone of rest, which is wider than that of sliding: it stays.
 TEST_P(Friction, ComesToRestInTheConeOfRest) {
-    const auto run = run_of(block(-0.5, 1.0, R"(slip = "x'", friction = 0.3, static_friction = 0.7)"), 10.0, GetParam());
+    const auto run =
+        run_of(block(-0.5, 1.0, R"(slip = "x'", friction = 0.3, static_friction = 0.7)"), 10.0, GetParam());
     ASSERT_EQ(run.events.size(), 1u);
     EXPECT_EQ(run.events[0].kind, Kind::stick);
     EXPECT_NEAR(run.events[0].t, 1.25, accuracy(GetParam()));
