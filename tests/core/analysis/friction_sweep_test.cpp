@@ -37,8 +37,9 @@ lagrangian.potential = "x^2/2"
 friction = [{name = "joint", slip = "x'", level = "F"}]
 )toml",
         {"heat", "sticks", "slips", "stick_time(1)", "stick_time(2)", "slip_time", "friction_force_joint", "d(x, F)",
-         "d(stick_time, x')", "d(friction_force_joint, x)", "reversals", "reversal_time(1)", "d(reversal_time, x)"});
-    ASSERT_EQ(found.size(), 13u);
+         "d(stick_time, x')", "d(friction_force_joint, x)", "reversals", "reversal_time(1)", "d(reversal_time, x)",
+         "d(friction_force_joint^2, x)"});
+    ASSERT_EQ(found.size(), 14u);
     const double A = std::sqrt(205.0), rest = 15.0 - A;
     EXPECT_NEAR(found[0], 45.0 - 0.5 * rest * rest, 1e-12);
     EXPECT_EQ(found[1], 1.0);
@@ -50,6 +51,7 @@ friction = [{name = "joint", slip = "x'", level = "F"}]
     EXPECT_NEAR(found[7], 3.0 - 14.0 / A, 1e-12);
     EXPECT_NEAR(found[8], 14.0 / 205.0, 1e-13);
     EXPECT_NEAR(found[9], -14.0 / A, 1e-12);
+    EXPECT_NEAR(found[13], -2.0 * rest * 14.0 / A, 1e-12);
     EXPECT_EQ(found[10], 1.0);
     EXPECT_NEAR(found[11], std::atan(3.0 / 14.0), 1e-13);
     EXPECT_NEAR(found[12], -3.0 / 205.0, 1e-13);

@@ -59,7 +59,7 @@ void expect_certificates_to_hold(const Beside& beside, int part) {
 
 }  // namespace
 
-TEST_P(FrictionBeside, CertificatesHold) { expect_certificates_to_hold(GetParam(), GetParam().capped > 0 ? 2 : 5); }
+TEST_P(FrictionBeside, CertificatesHold) { expect_certificates_to_hold(GetParam(), GetParam().capped > 0 ? 2 : 4); }
 TEST_P(FrictionBeside, DISABLED_ManyCertificatesHold) { expect_certificates_to_hold(GetParam(), 1); }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, FrictionBeside,
