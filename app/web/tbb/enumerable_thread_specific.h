@@ -1,13 +1,21 @@
-// Stand-in for TBB on a page, where a sweep has one thread.
+// Stand-in for TBB on a page.
 #pragma once
+
+#include <map>
+#include <mutex>
+#include <thread>
 
 namespace tbb {
 template <class Value>
 class enumerable_thread_specific {
  public:
-    Value& local() { return value_; }
+    Value& local() {
+        const std::scoped_lock lock(mutex_);
+        return values_[std::this_thread::get_id()];
+    }
 
  private:
-    Value value_{};
+    std::mutex mutex_;
+    std::map<std::thread::id, Value> values_;
 };
 }  // namespace tbb
