@@ -26,6 +26,8 @@ class SweepRanks : public testing::Test {
     void SetUp() override {
         if (std::system("mpirun --version 2>/dev/null | grep -q 'Open MPI'") != 0)
             GTEST_SKIP() << "mpirun is missing, or not that of Open MPI (openmpi-bin)";
+        if (!std::filesystem::exists(ACHILLES_BINARY_DIR "/libachilles_mpi.so"))
+            GTEST_SKIP() << "built without MPI (libopenmpi-dev)";
     }
     Answer run(int ranks, const std::string& arguments) const {
         return folder_.run(arguments, mpirun + ("-n " + std::to_string(ranks)));

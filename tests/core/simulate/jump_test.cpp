@@ -74,6 +74,18 @@ TEST(Jump, HappensWhereItsFunctionFallsThroughZero) {
     }
 }
 
+// The function starts below zero and rises after many steps of a fast oscillation: only its fall is a jump.
+TEST(Jump, IsArmedByARiseManyStepsLater) {
+    for (const Method method : both_methods) {
+        const auto run =
+            run_until(point(1.0, 0.0, "1250*x^2",
+                            R"toml(jump = [{name = "kick", on = "sin(0.3*t) - 0.5", set = {"x'" = "0"}}])toml"),
+                      12.0, method);
+        EXPECT_EQ(words_of(run), "jump");
+        EXPECT_NEAR(run.events.at(0).t, pi / 0.36, known_to(method));
+    }
+}
+
 TEST(Jump, BooksItsEnergyAsLossAndMayGain) {
     const auto run = run_until(
         point(0.5, 0.0, "x", R"toml(jump = [{name = "kick", on = "(x)", set = {x = "x + 1", "x'" = "1 + t"}}])toml"),
