@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "number/jet8.hpp"
 #include "number/lanes.hpp"
 #include "program/machine.hpp"
 #include "series/recurrence.hpp"
@@ -22,6 +23,10 @@ template <class Number>
 inline constexpr bool is_lanes = false;
 template <std::size_t Bytes>
 inline constexpr bool is_lanes<Lanes<Bytes>> = true;
+
+// As the template in recurrence.hpp, by the widest vectors of the processor.
+void make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
+                       const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k);
 
 // A program over any number type. Over double and lanes it uses machine code if available. Over lanes the constants are
 // those of double; over other types they are as accurate as the type allows.

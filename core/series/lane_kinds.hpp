@@ -24,11 +24,22 @@
 
 namespace achilles {
 
+struct SeriesPlan;
+template <class Number>
+struct InnerSums;
+template <class Number>
+struct SeriesTablesOver;
+template <std::size_t Bytes>
+struct Jet8;
+
 template <std::size_t Bytes>
 struct LaneKind {
     static std::unique_ptr<LaneStepper> make_stepper(const LanePrograms& programs, double tolerance,
                                                      std::optional<Width> machine_code);
     static void sine_and_cosine(const Double8* angle, Double8* sine, Double8* cosine);
+    // As make_motion_order() in recurrence.hpp, with eight derivatives. The layout of the numbers is that of all sizes.
+    static void make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
+                                  const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k);
 };
 using PortableLanes = LaneKind<16>;
 using Avx2Lanes = LaneKind<32>;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "number/jet8.hpp"
 #include "number/lanes.hpp"
 #include "number/polynomial.hpp"
 #include "series/lane_kinds.hpp"
@@ -303,6 +304,17 @@ void LaneKind<Bytes>::sine_and_cosine(const Double8* angle, Double8* sine, Doubl
     achilles::sine_and_cosine(Lanes<Bytes>(*angle), s, c);
     *sine = s;
     *cosine = c;
+}
+
+template <std::size_t Bytes>
+void LaneKind<Bytes>::make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
+                                        const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k) {
+    using Number = Jet8<Bytes>;
+    static_assert(sizeof(Number) == sizeof(Jet8<16>) && alignof(Number) == alignof(Jet8<16>));
+    const SeriesTablesOver<Number> same{reinterpret_cast<const std::array<Number, 3>*>(tables.factors),
+                                        reinterpret_cast<Number*>(tables.now), reinterpret_cast<Number*>(tables.rows)};
+    achilles::make_motion_order<Number>(plan, reinterpret_cast<const InnerSums<Number>&>(sums), same,
+                                        reinterpret_cast<Number*>(row), k);
 }
 
 }  // namespace achilles

@@ -53,7 +53,9 @@ int main(int argc, char** argv) {
     for (const std::string& name : all_systems()) {
         const auto model = load(name);
         try {
-            tell(name, prove(model, problem_from_decimals(model->default_run())));
+            const EnclosureProblem problem = problem_from_decimals(model->default_run());
+            check(*model, problem);
+            tell(name, prove(model, problem));
         } catch (const InputError& refusal) {
             refused += fmt::format("{}: {}\n", name, refusal.message);
         }

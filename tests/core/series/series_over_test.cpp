@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <random>
 
 #include "core/machine_code.hpp"
 #include "core/systems.hpp"
 #include "expression/parse.hpp"
 #include "number/jet.hpp"
+#include "series/lane_kinds.hpp"
 
 namespace achilles {
 namespace {
@@ -104,6 +106,52 @@ TEST(SeriesOver, HasSlopesThatAreLimitsOfDifferences) {
                              "(p*x + 2*y - 1)*(x - p*y)/(3 + x - y)",
                              "x + y + x*y + x^2 + y^2 + sin(x) + p*cos(y) + exp(x)"})
         expect_slopes(text);
+}
+
+// One order of a motion with its slopes, from random numbers, by one size of vectors: all numbers that it makes.
+std::vector<double> random_order(const SeriesProgram& program, decltype(PortableLanes::make_motion_order)* make) {
+    using Number = Jet8<16>;
+    constexpr std::size_t k = 5;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    const auto fill = [&](std::vector<Number>& numbers) {
+        for (Number& number : numbers) {
+            number = any(random);
+            for (std::size_t i = 0; i < Number::directions; ++i) number.slope.set(i, any(random));
+        }
+    };
+    const SeriesPlan& plan = LaneAccess::plan_of(program);
+    const InnerSums<Number> sums(plan, program.inner_sums());
+    std::vector<Number> now(plan.numbers()), rows(sums.row() * (k + 2)), states(plan.states() * (k + 1)),
+        factors(3 * plan.rules.size());
+    for (std::vector<Number>* numbers : {&now, &rows, &states, &factors}) fill(*numbers);
+    std::vector<std::array<Number, 3>> by_rule;
+    for (std::size_t i = 0; i < factors.size(); i += 3) by_rule.push_back({factors[i], factors[i + 1], factors[i + 2]});
+    make(plan, sums, {by_rule.data(), now.data(), rows.data()}, states.data() + k * plan.states(), k);
+    std::vector<double> all;
+    for (const std::vector<Number>* numbers : {&now, &rows, &states})
+        for (const Number& number : *numbers) {
+            all.push_back(number.value);
+            for (std::size_t i = 0; i < Number::directions; ++i) all.push_back(number.slope[i]);
+        }
+    return all;
+}
+
+TEST(SeriesOver, SlopesAreTheSameByVectorsOfEverySize) {
+    for (const char* name : {"double_pendulum", "ball_in_gusts", "kneed_leg"}) {
+        const auto model = test::load(name);
+        const SeriesProgram& program = model->motion(Mode()).series;
+        const std::vector<double> narrow = random_order(program, PortableLanes::make_motion_order);
+        ASSERT_GT(std::count_if(narrow.begin(), narrow.end(), [](double x) { return std::isfinite(x); }), 100);
+#ifdef ACHILLES_HAS_WIDE_LANES
+        if (__builtin_cpu_supports("avx2") != 0) {
+            EXPECT_EQ(random_order(program, Avx2Lanes::make_motion_order), narrow) << name;
+        }
+        if (__builtin_cpu_supports("avx512f") != 0) {
+            EXPECT_EQ(random_order(program, Avx512Lanes::make_motion_order), narrow) << name;
+        }
+#endif
+    }
 }
 
 // The coefficients of a system's motion, made by so many orders at a time: order 21 of q and v alone.
