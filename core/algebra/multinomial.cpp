@@ -40,13 +40,13 @@ Multinomial merged(const Multinomial& a, const Multinomial& b, bool minus) {
         const auto order = x == a.terms().end()   ? std::strong_ordering::less
                            : y == b.terms().end() ? std::strong_ordering::greater
                                                   : x->powers <=> y->powers;
-        if (order > 0) {
+        if (std::is_gt(order)) {
             sum.push_back(*x++);
             continue;
         }
         Term term{y->powers, minus ? Integer(-y->coefficient) : y->coefficient};
         ++y;
-        if (order == 0) term.coefficient += (x++)->coefficient;
+        if (std::is_eq(order)) term.coefficient += (x++)->coefficient;
         if (term.coefficient != 0) sum.push_back(std::move(term));
     }
     return Multinomial::of_sorted(std::move(sum));
