@@ -68,11 +68,13 @@ void add_values(const std::string& typed, const Session& session, std::vector<Na
         const auto parameter = std::find_if(system.parameters.begin(), system.parameters.end(),
                                             [&](const ParameterDescription& one) { return one.name == known; });
         const std::string about = parameter == system.parameters.end() ? "start of the run" : parameter->about;
-        if (!value.empty() && name == known)
-            entries.insert(entries.begin(), {typed, "", "set " + known + " " + value, "set " + known + " " + value});
-        else if (value.empty())
+        if (!value.empty() && name == known) {
+            const std::string line = fmt::format("set {} {}", known, value);
+            entries.insert(entries.begin(), {typed, "", line, line});
+        } else if (value.empty()) {
             entries.push_back({fmt::format("{} = {:.6g}", known, *session.value(known)), about,
                                "set " + known + " VALUE", known + " = ", false});
+        }
     }
 }
 
@@ -263,9 +265,7 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
         take(found[static_cast<std::size_t>(clicked)], session, state, commands);
     else if (completes && found[static_cast<std::size_t>(palette.chosen)].entry < 0)
         write_line(palette, found[static_cast<std::size_t>(palette.chosen)].line);
-    else if (completes)
-        take(found[static_cast<std::size_t>(palette.chosen)], session, state, commands);
-    else if (entered && !found.empty())
+    else if (completes || (entered && !found.empty()))
         take(found[static_cast<std::size_t>(palette.chosen)], session, state, commands);
     else if (entered)
         run(palette.text, session, state, commands);

@@ -27,7 +27,7 @@ constexpr double click = 4.0;  // click tolerance, pixels
 
 Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
     const Panel& panel = session.plots()[plot];
-    const Sample now = session.now();
+    const Sample& now = session.now();
     return panel.curves.size() == panel.courses
                ? phase_color(session.theme(), look_of(*session.model(), now.phase, now.mode))
                : panel.curves[panel.courses * curve].stroke.color;
