@@ -14,7 +14,7 @@ constexpr unsigned max_coefficient_bits = 4096;
 Monomial product(const Monomial& a, const Monomial& b) {
     Monomial result;
     std::uint8_t is_over = 0;
-    for (std::size_t i = 0; i < max_atoms; ++i) {  // without a branch, so that it is compiled into vectors
+    for (std::size_t i = 0; i < max_atoms; ++i) {  // no branch, so that the compiler uses vectors
         result[i] = static_cast<std::uint8_t>(a[i] + b[i]);
         is_over = static_cast<std::uint8_t>(is_over | (result[i] < a[i] ? 1 : 0));
     }
@@ -275,7 +275,7 @@ class Images {
 
  private:
     const Multinomial* polynomial_;
-    std::vector<std::uint64_t> values_;  // of the terms
+    std::vector<std::uint64_t> values_;  // values_[i] is term i with all atoms at their values
 };
 
 // Upper bound on the degree of the gcd of two polynomials in an atom: that of the gcd of their images x and y. If an

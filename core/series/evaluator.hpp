@@ -24,7 +24,7 @@ inline constexpr bool is_lanes = false;
 template <std::size_t Bytes>
 inline constexpr bool is_lanes<Lanes<Bytes>> = true;
 
-// As the template in recurrence.hpp, by the widest vectors of the processor.
+// Does what the template in recurrence.hpp does, with the widest vectors that the processor has.
 void make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
                        const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k);
 

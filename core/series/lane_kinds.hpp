@@ -37,7 +37,8 @@ struct LaneKind {
     static std::unique_ptr<LaneStepper> make_stepper(const LanePrograms& programs, double tolerance,
                                                      std::optional<Width> machine_code);
     static void sine_and_cosine(const Double8* angle, Double8* sine, Double8* cosine);
-    // As make_motion_order() in recurrence.hpp, with eight derivatives. The layout of the numbers is that of all sizes.
+    // Does what make_motion_order() in recurrence.hpp does, with eight derivatives. Numbers of all vector sizes have
+    // the same layout.
     static void make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
                                   const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k);
 };

@@ -71,7 +71,7 @@ class DrawnRun {
 
 TEST(Keyframes, PutEveryPointWhereTheRunIs) {
     for (const auto& [name, part] : {std::pair("ball_on_sine", 2e-3),
-                                     {"ball_on_sine", 1e-5},  // divides steps many times
+                                     {"ball_on_sine", 1e-5},  // steps are divided many times
                                      {"double_pendulum", 2e-3},
                                      {"slider_crank_clearance", 2e-3},
                                      {"block_on_incline", 2e-3}}) {

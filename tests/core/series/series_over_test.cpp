@@ -108,7 +108,7 @@ TEST(SeriesOver, HasSlopesThatAreLimitsOfDifferences) {
         expect_slopes(text);
 }
 
-// One order of a motion with its slopes, from random numbers, by one size of vectors: all numbers that it makes.
+// Makes one order of a motion with its slopes, from random numbers and with vectors of one size. Returns all numbers.
 std::vector<double> random_order(const SeriesProgram& program, decltype(PortableLanes::make_motion_order)* make) {
     using Number = Jet8<16>;
     constexpr std::size_t k = 5;
