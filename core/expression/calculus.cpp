@@ -102,7 +102,8 @@ Expression rebuild(Expression e, Expression a, Expression b) {
 
 }  // namespace
 
-std::vector<Expression> derivative(std::span<const Expression> expressions, std::uint32_t slot) {
+std::vector<Expression> derivative_along(std::span<const Expression> expressions, std::span<const std::uint32_t> slots,
+                                         std::span<const Expression> direction) {
     if (expressions.empty()) return {};
     Graph& graph = expressions.front().graph();
     const std::vector<bool> needed = reachable(expressions);
@@ -112,7 +113,8 @@ std::vector<Expression> derivative(std::span<const Expression> expressions, std:
         if (!needed[id]) continue;
         const Graph::Node node = graph.node(id);  // a copy: the table grows below
         if (node.operation == Op::symbol) {
-            d[id] = graph.number(node.a == slot ? 1 : 0);
+            for (std::size_t i = 0; i < slots.size(); ++i)
+                if (slots[i] == node.a) d[id] = direction[i];
         } else if (!is_leaf(node.operation)) {
             const Expression db = is_binary(node.operation) ? d[node.b] : zero;
             if (!d[node.a].is_zero() || !db.is_zero()) d[id] = derivative_of({&graph, id}, d[node.a], db);
@@ -121,6 +123,12 @@ std::vector<Expression> derivative(std::span<const Expression> expressions, std:
     std::vector<Expression> result;
     for (const Expression expression : expressions) result.push_back(d[expression.id()]);
     return result;
+}
+
+std::vector<Expression> derivative(std::span<const Expression> expressions, std::uint32_t slot) {
+    if (expressions.empty()) return {};
+    const Expression one = expressions.front().graph().number(1);
+    return derivative_along(expressions, {&slot, 1}, {&one, 1});
 }
 
 Expression derivative(Expression expression, std::uint32_t slot) {
@@ -141,9 +149,11 @@ std::vector<Expression> gradient(Expression expression, std::span<const std::uin
     return jacobian(std::span(&expression, 1), slots).front();
 }
 
-Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values) {
-    Graph& graph = expression.graph();
-    const std::vector<bool> needed = reachable(std::span(&expression, 1));
+std::vector<Expression> substitute(std::span<const Expression> expressions, std::span<const std::uint32_t> slots,
+                                   std::span<const Expression> values) {
+    if (expressions.empty()) return {};
+    Graph& graph = expressions.front().graph();
+    const std::vector<bool> needed = reachable(expressions);
     std::vector<Expression> image(needed.size());
     for (std::uint32_t id = 0; id < needed.size(); ++id) {
         if (!needed[id]) continue;
@@ -158,7 +168,13 @@ Expression substitute(Expression expression, std::span<const std::uint32_t> slot
             if (!same) image[id] = rebuild({&graph, id}, image[node.a], b);
         }
     }
-    return image[expression.id()];
+    std::vector<Expression> result;
+    for (const Expression expression : expressions) result.push_back(image[expression.id()]);
+    return result;
+}
+
+Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values) {
+    return substitute(std::span(&expression, 1), slots, values).front();
 }
 
 bool depends_on(Expression expression, std::span<const std::uint32_t> slots) {

@@ -135,7 +135,11 @@ class Graph {
     std::unique_ptr<Table> table_;
 };
 
-// d(expression)/d(symbol `slot`). For a list, all derivatives are taken in one pass over the graph.
+// The derivatives along a direction, in one pass over the graph: of each expression, the sum of d(expression)/d(symbol
+// of slots[i]) direction[i].
+std::vector<Expression> derivative_along(std::span<const Expression> expressions, std::span<const std::uint32_t> slots,
+                                         std::span<const Expression> direction);
+// d(expression)/d(symbol `slot`). For a list, all derivatives are taken in one pass.
 Expression derivative(Expression expression, std::uint32_t slot);
 std::vector<Expression> derivative(std::span<const Expression> expressions, std::uint32_t slot);
 // The same for each slot of a list. Each row of a Jacobian belongs to an expression, each column to a slot.
@@ -143,8 +147,10 @@ std::vector<Expression> gradient(Expression expression, std::span<const std::uin
 std::vector<std::vector<Expression>> jacobian(std::span<const Expression> expressions,
                                               std::span<const std::uint32_t> slots);
 
-// Substitutes values[i] for the symbol of slots[i].
+// Substitutes values[i] for the symbol of slots[i]. A list is substituted in one pass.
 Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values);
+std::vector<Expression> substitute(std::span<const Expression> expressions, std::span<const std::uint32_t> slots,
+                                   std::span<const Expression> values);
 
 // True if the expression depends on any of these symbols.
 bool depends_on(Expression expression, std::span<const std::uint32_t> slots);

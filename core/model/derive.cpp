@@ -464,19 +464,23 @@ Expressions pivots_of(const Equations& equations, Graph& graph) {
     return pivots;
 }
 
+struct ModeSeries {
+    SeriesProgram program;
+    Expressions acceleration;
+};
 // The series of a mode with these event functions. Of the two forms of the acceleration, the one with fewer products is
 // used.
-SeriesProgram series_of(const ModeEquations& motion, const Expressions& event_functions, const Expressions& pivots,
-                        const Layout& layout) {
+ModeSeries series_of(const ModeEquations& motion, const Expressions& event_functions, const Expressions& pivots,
+                     const Layout& layout) {
     const auto with = [&](const Expressions& acceleration) {
         return SeriesProgram(Program(joined({acceleration, event_functions, pivots}), layout.slots()), layout.dof,
                              event_functions.size());
     };
     const auto [f, by_force] = accelerations(motion);
-    SeriesProgram series = with(f);
+    ModeSeries series{with(f), f};
     if (!by_force.empty()) {
         SeriesProgram other = with(by_force);
-        if (other.inner_sums() < series.inner_sums()) series = std::move(other);
+        if (other.inner_sums() < series.program.inner_sums()) series = {std::move(other), by_force};
     }
     return series;
 }
@@ -486,7 +490,7 @@ SeriesProgram series_of(const ModeEquations& motion, const Expressions& event_fu
 SeriesProgram make_hddot_series(const ModeEquations& motion, const Equations& equations, const Layout& layout) {
     Expressions hddot;
     for (const ContactEquations& contact : motion.contacts) hddot.push_back(contact.hddot);
-    return series_of(motion, hddot, pivots_of(equations, motion.f.front().graph()), layout);
+    return series_of(motion, hddot, pivots_of(equations, motion.f.front().graph()), layout).program;
 }
 
 ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const Layout& layout, ContactModes& modes) {
@@ -520,10 +524,16 @@ ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const 
     Expressions powers;
     if (!motion.slips.empty()) powers = modes.powers(motion.mode, graph.adopt(e.power));
     if (std::all_of(powers.begin(), powers.end(), [](Expression power) { return power.is_zero(); })) powers.clear();
-    SeriesProgram series = series_of(motion, joined({event_functions, powers}), pivots, layout);
-    return {motion.mode,       TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
-            std::move(series), std::move(friction.events),
-            guards.size(),     powers.size()};
+    ModeSeries series = series_of(motion, joined({event_functions, powers}), pivots, layout);
+    event_functions.resize(motion.contacts.size());
+    return {motion.mode,
+            std::move(series.acceleration),
+            std::move(event_functions),
+            TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
+            std::move(series.program),
+            std::move(friction.events),
+            guards.size(),
+            powers.size()};
 }
 
 }  // namespace achilles

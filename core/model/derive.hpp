@@ -177,6 +177,7 @@ Expression jerk_of(const ContactEquations& contact, const Layout& layout);
 // last event functions: they are integrated along a step, not watched.
 struct ModeDynamics {
     Mode mode;
+    std::vector<Expression> f, event_functions;  // as in the series; event functions of the contacts only
     TypedProgram<MotionTerms> program;
     SeriesProgram series;                 // MotionSeries
     std::vector<FrictionEvent> friction;  // event function contacts + k is friction[k]

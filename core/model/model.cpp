@@ -178,7 +178,7 @@ const auto& Model::derived(Map& map, const typename Map::key_type& key, const Ma
     try {
         return map.emplace(key, make()).first->second;
     } catch (const ExpressionTooLarge& problem) {
-        throw too_large("the equations for held contacts or for certificates", problem);
+        throw too_large("the equations for held contacts, certificates or derivatives", problem);
     }
 }
 
@@ -200,6 +200,11 @@ const Program& Model::guard_curvatures(Mode mode) const {
 const SeriesProgram& Model::hddot_series(Mode mode) const {
     return derived(hddot_series_, mode,
                    [&] { return make_hddot_series(contact_modes().of(mode), equations_, layout_); });
+}
+
+const MotionVariation& Model::variation(Mode mode, std::uint32_t directions) const {
+    const ModeDynamics& dynamics = motion(mode);
+    return derived(variations_, {mode, directions}, [&] { return make_variation(dynamics, layout_, directions); });
 }
 
 const Model::ContactPrograms& Model::programs_of(std::size_t contact, Mode mode) const {

@@ -22,6 +22,7 @@
 #include "model/friction_bouncing.hpp"
 #include "model/restitution.hpp"
 #include "model/scopes.hpp"
+#include "model/variation.hpp"
 #include "program/program.hpp"
 #include "program/terms.hpp"
 #include "run/trajectory.hpp"
@@ -62,6 +63,9 @@ class Model {
     LanePrograms lane_programs() const;
     // The same mode with hddot of every contact as event functions, for proofs (make_hddot_series).
     const SeriesProgram& hddot_series(Mode mode) const;
+
+    // The motion with its derivatives in so many directions over eight lanes, compiled at first use.
+    const MotionVariation& variation(Mode mode, std::uint32_t directions) const;
 
     // The programs of one contact in a mode in which it is open, compiled at first use.
     struct ContactPrograms {
@@ -223,6 +227,7 @@ class Model {
     mutable std::unique_ptr<ContactModes> modes_;
     mutable std::map<Mode, ModeDynamics> motions_;
     mutable std::map<Mode, SeriesProgram> hddot_series_;
+    mutable std::map<std::pair<Mode, std::uint32_t>, MotionVariation> variations_;
     mutable std::map<Mode, Program> powers_;
     mutable std::map<Mode, SeriesProgram> power_series_;
     mutable std::map<ContactInMode, ContactPrograms> programs_;

@@ -56,8 +56,10 @@ struct alignas(Double8) Mask {
     }
     IN_LANES friend Mask& operator&=(Mask& a, const Mask& b) { return a = a & b; }
     IN_LANES friend bool any(const Mask& mask) {
+        auto of_parts = mask.part[0];
+        EACH_PART of_parts |= mask.part[p];
         std::int64_t all = 0;
-        EACH_PART for (std::size_t i = 0; i < per_part; ++i) all |= mask.part[p][i];
+        for (std::size_t i = 0; i < per_part; ++i) all |= of_parts[i];
         return all != 0;
     }
 };

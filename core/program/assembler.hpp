@@ -5,12 +5,15 @@
 
 #include <xbyak/xbyak.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "program/machine.hpp"
 
@@ -22,7 +25,8 @@ inline Xbyak::Address at(const Xbyak::Reg64& base, std::ptrdiff_t doubles) {
 }
 
 // A number is identified by its index from an address in a general register. Of the vector registers 0 .. 15 the first
-// `free` are for temporary use. The others cache results, which are also stored in memory.
+// `free` are for temporary use. The others cache results, which are also stored in memory; with vectors of eight,
+// cache_in_all_registers() adds those up to 31.
 class Assembler : public Xbyak::CodeGenerator {
  public:
     using Xmm = Xbyak::Xmm;
@@ -37,6 +41,7 @@ class Assembler : public Xbyak::CodeGenerator {
           numbers_(numbers),
           free_(free),
           doubles_(static_cast<std::ptrdiff_t>(of_number)),
+          wide_(of_vector),
           width_(of_vector) {
         setDefaultJmpNEAR(true);  // the distance of a forward jump is not known when it is emitted
     }
@@ -67,20 +72,42 @@ class Assembler : public Xbyak::CodeGenerator {
     std::ptrdiff_t part() const { return part_; }
     // Offset, in doubles, of a number from the first one, and the current part of a number as an operand.
     std::ptrdiff_t place(std::uint32_t index) const { return static_cast<std::ptrdiff_t>(index) * doubles_; }
-    Xbyak::Address number(std::uint32_t index) const { return at(numbers_, place(index) + part_); }
-    // A vector register of the instructions' width.
-    Xmm vector(unsigned reg) const {
-        constexpr auto one = Operand::XMM, four = Operand::YMM, eight = Operand::ZMM;
-        return {width_ == Width::one ? one : width_ == Width::four ? four : eight, static_cast<int>(reg)};
+    Xbyak::Address number(std::uint32_t index) const {
+        if (!is_single(index) || width_ == Width::one) return at(numbers_, place(index) + part_);
+        return Xbyak::util::ptr_b[numbers_ + static_cast<std::size_t>(8 * place(index))];
     }
+    // A number that is in memory as one double, but in registers in all lanes. Needs vectors of eight.
+    void make_single(std::uint32_t index) {
+        single_.resize(std::max(single_.size(), index + std::size_t{1}));
+        single_[index] = true;
+    }
+    // Computes such a number, as result(index), by instructions for one double.
+    template <class Write>
+    void compute_single(std::uint32_t index, const Write& write) {
+        width_ = Width::one;
+        write();
+        width_ = wide_;
+        const Xmm result = *holder(index);
+        broadcast(result, Xmm(result.getIdx()));
+    }
+    bool is_single(std::uint32_t index) const { return index < single_.size() && single_[index]; }
+    // A vector register of the instructions' width.
+    Xmm vector(unsigned reg) const { return vector(reg, width_); }
 
     // A register for the result with this index. Its previous content is dropped from the cache.
     Xmm result(std::uint32_t index) {
         const unsigned reg = free_ + results_++ % room();
-        if (held_[reg]) holding_.erase(*held_[reg]);
+        if (const auto before = held_[reg]) {
+            if (*before < last_use_.size() && last_use_[*before] >= position_) store(vector(reg), *before);
+            holding_.erase(*before);
+        }
         hold(index, reg);
         return vector(reg);
     }
+    // From now on, a result is stored only if its register is reused while it is still needed. `last_use` gives, by
+    // index, the last position at which it is; set_position() that of the code that follows.
+    void store_when_needed(std::vector<std::size_t> last_use) { last_use_ = std::move(last_use); }
+    void set_position(std::size_t position) { position_ = position; }
     // The register that caches a number, if any.
     std::optional<Xmm> holder(std::uint32_t index) const {
         const auto found = holding_.find(index);
@@ -94,17 +121,20 @@ class Assembler : public Xbyak::CodeGenerator {
     }
     // Records that the register holds a number. Registers beyond those of results keep it permanently.
     void hold(std::uint32_t index, unsigned reg) {
-        if (reg < held_.size()) held_[reg] = index;
+        if (reg < end_) held_[reg] = index;
         holding_[index] = reg;
     }
     // The number of results that can be cached at once.
-    unsigned room() const { return 16 - free_; }
+    unsigned room() const { return end_ - free_; }
+    void cache_in_all_registers() { end_ = 32; }
 
     void store(const Xmm& from, std::uint32_t index) {
-        width_ == Width::one ? vmovsd(number(index), from) : vmovupd(number(index), from);
+        if (is_single(index) || wide_ == Width::one) return vmovsd(at(numbers_, place(index)), Xmm(from.getIdx()));
+        vmovupd(at(numbers_, place(index) + part_), vector(static_cast<unsigned>(from.getIdx()), wide_));
     }
     void get(const Xmm& to, std::uint32_t index) {
         if (const auto held = holder(index)) return vmovapd(to, *held);  // vmovsd would depend on the old upper half
+        if (is_single(index) && width_ != Width::one) return broadcast(to, at(numbers_, place(index)));
         width_ == Width::one ? vmovsd(to, number(index)) : vmovupd(to, number(index));
     }
     // The register that caches the number; otherwise loads the number into the given register and returns that.
@@ -192,14 +222,22 @@ class Assembler : public Xbyak::CodeGenerator {
     };
     static inline OrdinaryMemory ordinary_memory;
 
+    static Xmm vector(unsigned reg, Width width) {
+        constexpr auto one = Operand::XMM, four = Operand::YMM, eight = Operand::ZMM;
+        return {width == Width::one ? one : width == Width::four ? four : eight, static_cast<int>(reg)};
+    }
+
     Xbyak::Reg64 numbers_;
-    unsigned free_;
+    unsigned free_, end_ = 16;
     std::ptrdiff_t doubles_;  // per number
-    Width width_;
+    Width wide_, width_;      // of all code, and of that which is written now
     std::ptrdiff_t part_ = 0;
     unsigned results_ = 0;
+    std::vector<std::size_t> last_use_;  // empty if the caller stores all results
+    std::size_t position_ = 0;
+    std::vector<bool> single_;
     std::unordered_map<std::uint32_t, unsigned> holding_;  // from a number to the register that caches it
-    std::array<std::optional<std::uint32_t>, 16> held_;    // and the inverse
+    std::array<std::optional<std::uint32_t>, 32> held_;    // and the inverse
 };
 
 }  // namespace achilles

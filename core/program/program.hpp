@@ -48,6 +48,7 @@ class Program {
     template <class Scalar>
     friend class Evaluator;
     friend class SeriesCompiler;
+    friend class SeriesProgram;
     template <class Number>
     friend class SeriesEvaluator;
     friend class LaneAccess;

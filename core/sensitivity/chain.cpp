@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 namespace achilles {
 
@@ -10,15 +12,17 @@ using Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
-// Columns first .. first + Columns of the product. Skips zeros, because J is sparse.
+struct Entry {
+    Eigen::Index column;
+    double value;
+};
+
+// Columns first .. first + Columns of row i of a product J Z, from the nonzero entries of row i of J.
 template <int Columns>
-void multiply(const RowMatrix& J, const RowMatrix& Z, Eigen::Index first, RowMatrix& product) {
-    for (Eigen::Index i = 0; i < product.rows(); ++i) {
-        Eigen::Matrix<double, 1, Columns> sum = Eigen::Matrix<double, 1, Columns>::Zero();
-        for (Eigen::Index j = 0; j < J.cols(); ++j)
-            if (const double c = J(i, j); c != 0.0) sum += c * Z.row(j).segment<Columns>(first);
-        product.row(i).segment<Columns>(first) = sum;
-    }
+void multiply(std::span<const Entry> row, const RowMatrix& Z, Eigen::Index i, Eigen::Index first, RowMatrix& product) {
+    Eigen::Matrix<double, 1, Columns> sum = Eigen::Matrix<double, 1, Columns>::Zero();
+    for (const Entry& entry : row) sum += entry.value * Z.row(entry.column).segment<Columns>(first);
+    product.row(i).segment<Columns>(first) = sum;
 }
 
 }  // namespace
@@ -31,9 +35,18 @@ void ChainLink::apply(RowMatrix& Z) const {
         return;
     }
     RowMatrix product(changed, Z.cols());
-    Eigen::Index first = 0;
-    for (; first + 8 <= Z.cols(); first += 8) multiply<8>(J, Z, first, product);
-    for (; first < Z.cols(); ++first) multiply<1>(J, Z, first, product);
+    std::vector<Entry> entries(static_cast<std::size_t>(J.cols()));
+    for (Eigen::Index i = 0; i < changed; ++i) {
+        std::size_t count = 0;  // J is sparse
+        for (Eigen::Index j = 0; j < J.cols(); ++j)
+            if (const double c = J(i, j); c != 0.0) entries[count++] = {j, c};
+        const std::span<const Entry> row(entries.data(), count);
+        Eigen::Index first = 0;
+        for (; first + 8 <= Z.cols(); first += 8) multiply<8>(row, Z, i, first, product);
+        for (; first + 4 <= Z.cols(); first += 4) multiply<4>(row, Z, i, first, product);
+        for (; first + 2 <= Z.cols(); first += 2) multiply<2>(row, Z, i, first, product);
+        if (first < Z.cols()) multiply<1>(row, Z, i, first, product);
+    }
     Z.topRows(changed) = product;
 }
 

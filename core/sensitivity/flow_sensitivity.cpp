@@ -5,16 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "number/jet.hpp"
 #include "series/series_over.hpp"
 
 namespace achilles {
 
 namespace {
 
-using Number = Jet8<16>;  // with slopes by this many variables at once
-constexpr std::size_t N = Number::directions;
-using Eights = Lanes<16>;
+using Eights = Lanes<16>;  // derivatives by this many variables at once
+constexpr std::size_t N = Double8::count;
 constexpr int highest = 32, first_few = 4;  // orders; beyond `highest` the step is shortened
 constexpr double nearly = 8.0;
 
@@ -33,44 +31,47 @@ std::vector<std::uint32_t> variables_of(const SeriesProgram& program, const Tang
 
 class FlowSensitivityBySeries : public FlowSensitivity {
  public:
-    FlowSensitivityBySeries(const SeriesProgram& program, Mode mode, const TangentLayout& tangent,
+    FlowSensitivityBySeries(const Model& model, Mode mode, const TangentLayout& tangent,
                             std::span<const double> parameters, const std::vector<bool>& varied, double tolerance)
         : mode_(mode),
           tangent_(tangent),
           tolerance_(tolerance),
-          variables_(variables_of(program, tangent, varied)),
-          start_(2 * tangent.dof),
-          value_limits_(rows()) {
-        std::vector<Number> numbers(parameters.size());
-        for (std::size_t first = 0; first < variables_.size(); first += N) {
-            for (std::size_t k = 0; k < numbers.size(); ++k)
-                numbers[k] = number(parameters[k], 2 * tangent.dof + k, first);
-            series_.emplace_back(program).fix(numbers);
+          variables_(variables_of(model.motion(mode).series, tangent, varied)),
+          variation_(model.variation(mode, static_cast<std::uint32_t>((variables_.size() + N - 1) / N))),
+          series_(variation_.series, variation_.code),
+          start_(2 * variation_.layout.coordinates(), Eights(0.0)),
+          limits_(variation_.layout.copies() * (2 * tangent.dof + tangent.contacts)) {
+        const VariationLayout& inputs = variation_.layout;
+        const Slots slots = inputs.slots();
+        std::vector<Eights> numbers(slots.parameters_end - slots.parameters_begin, Eights(0.0));
+        const auto first = static_cast<std::uint32_t>(2 * tangent.dof);
+        for (std::uint32_t k = 0; k < parameters.size(); ++k)
+            numbers[inputs.input(0, first + k) - slots.parameters_begin] = parameters[k];
+        for (std::uint32_t k = 0; k < variables_.size(); ++k) {
+            const auto direction = static_cast<std::uint32_t>(k / N);
+            const std::uint32_t place = inputs.input(1 + direction, variables_[k]);
+            (place < start_.size() ? start_[place] : numbers[place - slots.parameters_begin]).set(k % N, 1.0);
         }
-        limits_.resize(series_.size() * rows());
+        series_.fix(numbers);
     }
 
     double expand(const State& state, double length, int min_order) override {
-        const std::size_t n = tangent_.dof;
-        for (std::size_t group = 0; group < series_.size(); ++group) {
-            for (std::size_t i = 0; i < n; ++i) {
-                start_[i] = number(state.q[static_cast<Eigen::Index>(i)], i, group * N);
-                start_[n + i] = number(state.v[static_cast<Eigen::Index>(i)], n + i, group * N);
-            }
-            series_[group].begin(start_.data(), number(state.t, tangent_.variables() - 1, group * N));
+        const auto n = static_cast<std::uint32_t>(tangent_.dof);
+        for (std::uint32_t i = 0; i < n; ++i) {
+            start_[variation_.layout.input(0, i)] = state.q[static_cast<Eigen::Index>(i)];
+            start_[variation_.layout.input(0, n + i)] = state.v[static_cast<Eigen::Index>(i)];
         }
-        order_ = 0;
+        series_.begin(start_.data(), state.t);
         // Stop when the last term is small compared with the first few, and the one before nearly.
-        const int least = std::clamp(min_order, first_few + 1, highest);
+        const int least = std::clamp(min_order, first_few + 1, highest) - 1;
+        int made = least;
+        series_.extend(1, made);
         raise_to_powers(length);
-        bool before = false;
-        while (order_ < highest) {
-            ++order_;
-            for (SeriesOver<Number>& series : series_) series.extend(order_, order_);
-            if (order_ == first_few - 1) set_limits();
-            if (order_ < least - 1) continue;
+        set_limits();
+        order_ = least;
+        for (bool before = is_small(order_, nearly); order_ < highest; before = is_small(order_, nearly)) {
+            if (++order_ > made) series_.extend(order_, made = order_);
             if (before && is_small(order_, 1.0)) return length;
-            before = is_small(order_, nearly);
         }
         // Otherwise shorten the step, at which the last terms fall at least this fast; but not below the length where
         // errors of the run's own steps dominate.
@@ -83,26 +84,23 @@ class FlowSensitivityBySeries : public FlowSensitivity {
         return length;
     }
     int order() const override { return order_; }
-    double coefficient(int k, std::size_t i) const override { return value(k, i); }
+    double coefficient(int k, std::size_t i) const override { return series_.coefficient(k, place(0, i))[0]; }
 
     void slope_after(double span, Mode mode, RowMatrix& S) override {
         if (span != powers_[1]) raise_to_powers(span);
-        for (std::size_t group = 0; group < series_.size(); ++group) {
-            const auto sum = [&](std::size_t i, const Powers& weights, int first, Eigen::Index row) {
-                const Eights slope = sum_of_slopes(group, i, weights, first);
-                for (std::size_t d = 0; d < directions(group); ++d)
-                    S(row, tangent_.variable(variables_[group * N + d])) = slope[d];
-            };
-            for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) sum(i, powers_, 0, tangent_.q(i));
-            // h and u from order 2 on; the orders 0 and 1 are set below.
-            for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
-                if (mode.is_held(contact)) continue;
-                sum(2 * tangent_.dof + contact, powers_, 2, tangent_.h(contact));
-                sum(2 * tangent_.dof + contact, rates_, 2, tangent_.u(contact));
+        const auto sum = [&](std::size_t i, const Powers& weights, int first, Eigen::Index row) {
+            for (std::uint32_t copy = 1; copy < variation_.layout.copies(); ++copy) {
+                const Eights slope = sum_of_terms(place(copy, i), weights, first);
+                const std::size_t begin = (copy - 1) * N, end = std::min(begin + N, variables_.size());
+                for (std::size_t k = begin; k < end; ++k) S(row, tangent_.variable(variables_[k])) = slope[k - begin];
             }
-        }
+        };
+        for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) sum(i, powers_, 0, tangent_.q(i));
+        // h and u from order 2 on; the orders 0 and 1 are set below.
         for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
             if (mode.is_held(contact)) continue;
+            sum(2 * tangent_.dof + contact, powers_, 2, tangent_.h(contact));
+            sum(2 * tangent_.dof + contact, rates_, 2, tangent_.u(contact));
             S(tangent_.h(contact), tangent_.h(contact)) = S(tangent_.u(contact), tangent_.u(contact)) = 1.0;
             S(tangent_.h(contact), tangent_.u(contact)) = span;
         }
@@ -111,21 +109,24 @@ class FlowSensitivityBySeries : public FlowSensitivity {
  private:
     using Powers = std::array<double, highest + 1>;
 
-    // An input of the program as a number with slopes by the variables from `first` on.
-    Number number(double x, std::size_t input, std::size_t first) const {
-        for (std::size_t d = 0; d < N && first + d < variables_.size(); ++d)
-            if (variables_[first + d] == input) return Number::variable(x, d);
-        return x;
+    // The place of a copy of q, v or a gap in the rows of the series.
+    std::size_t place(std::uint32_t copy, std::size_t i) const {
+        const std::size_t states = 2 * tangent_.dof;
+        if (i < states) return variation_.layout.input(copy, static_cast<std::uint32_t>(i));
+        return start_.size() + copy * tangent_.contacts + (i - states);
     }
-    std::size_t directions(std::size_t group) const { return std::min(N, variables_.size() - group * N); }
-    double value(int k, std::size_t i) const { return series_.front().coefficient(k, i).value; }
-    const Eights& slope(std::size_t group, int k, std::size_t i) const {
-        return series_[group].coefficient(k, i).slope;
+    // The number of places, and the weight of order k there: for a gap, that in its rate.
+    std::size_t places() const { return limits_.size(); }
+    double weight(std::size_t place, int k) const {
+        return (place < start_.size() ? powers_ : rates_)[static_cast<std::size_t>(k)];
     }
-    // The weighted sum of the slopes of orders first .. order_; even and odd orders are summed separately.
-    Eights sum_of_slopes(std::size_t group, std::size_t i, const Powers& weights, int first) const {
+    Eights size_of_term(std::size_t place, int k) const {
+        return abs(series_.coefficient(k, place)) * weight(place, k);
+    }
+    // The weighted sum of the orders first .. order_; even and odd orders are summed separately.
+    Eights sum_of_terms(std::size_t place, const Powers& weights, int first) const {
         Eights even = 0.0, odd = 0.0;
-        const auto term = [&](int k) { return weights[static_cast<std::size_t>(k)] * slope(group, k, i); };
+        const auto term = [&](int k) { return weights[static_cast<std::size_t>(k)] * series_.coefficient(k, place); };
         int k = first;
         for (; k < order_; k += 2) {
             even += term(k);
@@ -141,52 +142,42 @@ class FlowSensitivityBySeries : public FlowSensitivity {
         for (std::size_t k = 2; k < rates_.size(); ++k) rates_[k] = static_cast<double>(k) * powers_[k - 1];
     }
 
-    // The weight of order k in row i of q, v and the gaps; for a gap, that in its rate.
-    double weight(std::size_t i, int k) const {
-        return (i < 2 * tangent_.dof ? powers_ : rates_)[static_cast<std::size_t>(k)];
-    }
-    std::size_t rows() const { return 2 * tangent_.dof + tangent_.contacts; }
-
     // The tolerance for the terms of each row, relative to the largest of the first few. Slopes far smaller than those
     // of other directions are rounding, or become relevant only later.
     void set_limits() {
-        for (std::size_t i = 0; i < rows(); ++i) {
+        for (std::size_t i = 0; i < 2 * tangent_.dof + tangent_.contacts; ++i) {
             const bool is_held = i >= 2 * tangent_.dof && mode_.is_held(i - 2 * tangent_.dof);
             const double none = is_held ? std::numeric_limits<double>::infinity() : 0.0;
-            double size = none;
-            for (int k = 0; k < first_few; ++k) size = std::max(size, std::abs(value(k, i)) * weight(i, k));
-            value_limits_[i] = tolerance_ * size;
-            for (std::size_t group = 0; group < series_.size(); ++group) {
+            double least = 0.0;
+            for (std::uint32_t copy = 0; copy < variation_.layout.copies(); ++copy) {
+                const std::size_t at = place(copy, i);
                 Eights sizes = none;
-                for (int k = 0; k < first_few; ++k) sizes = max(abs(slope(group, k, i)) * weight(i, k), sizes);
-                double least = size;
-                for (std::size_t d = 0; d < N; ++d) least = std::max(least, sizes[d]);
-                limits_[group * rows() + i] = tolerance_ * max(sizes, Eights(1e-6 * least));
+                for (int k = 0; k < first_few; ++k) sizes = max(size_of_term(at, k), sizes);
+                double largest = copy == 0 ? 0.0 : least;
+                for (std::size_t d = 0; d < N; ++d) largest = std::max(largest, sizes[d]);
+                if (copy == 0) least = largest;
+                limits_[at] = tolerance_ * max(sizes, Eights(1e-6 * largest));
             }
         }
     }
-    // Whether the terms of order k are within `times` their limits.
-    bool is_small(int k, double times) const {
-        for (std::size_t i = 0; i < rows(); ++i) {
-            const double share = weight(i, k) / times;
-            if (std::abs(value(k, i)) * share > value_limits_[i]) return false;
-            for (std::size_t group = 0; group < series_.size(); ++group)
-                if (any(abs(slope(group, k, i)) * share > limits_[group * rows() + i])) return false;
-        }
-        return true;
+    // Whether the terms of order k are within `times` their limits. The place where one was not is tried first.
+    bool is_small(int k, double times) {
+        const auto is_large = [&](std::size_t at) { return any(size_of_term(at, k) > times * limits_[at]); };
+        if (is_large(large_)) return false;
+        Eights::Mask large(false);
+        for (std::size_t i = 0; i < places(); ++i) large = large | (size_of_term(i, k) > times * limits_[i]);
+        if (!any(large)) return true;
+        for (large_ = 0; !is_large(large_);) ++large_;
+        return false;
     }
     // The largest ratio of the last two terms to their limits; 0 if all are within them.
     double last_terms() const {
         double largest = 0.0;
-        const auto take = [&](double term, double limit) {
-            if (term > limit) largest = std::max(largest, term / limit);
-        };
         for (const int k : {order_ - 1, order_})
-            for (std::size_t i = 0; i < rows(); ++i) {
-                take(std::abs(value(k, i)) * weight(i, k), value_limits_[i]);
-                for (std::size_t group = 0; group < series_.size(); ++group)
-                    for (std::size_t d = 0; d < N; ++d)
-                        take(std::abs(slope(group, k, i)[d]) * weight(i, k), limits_[group * rows() + i][d]);
+            for (std::size_t i = 0; i < places(); ++i) {
+                const Eights size = size_of_term(i, k);
+                for (std::size_t d = 0; d < N; ++d)
+                    if (size[d] > limits_[i][d]) largest = std::max(largest, size[d] / limits_[i][d]);
             }
         return largest;
     }
@@ -195,11 +186,12 @@ class FlowSensitivityBySeries : public FlowSensitivity {
     TangentLayout tangent_;
     double tolerance_;
     std::vector<std::uint32_t> variables_;
-    std::vector<SeriesOver<Number>> series_;  // each for N of the variables
-    std::vector<Number> start_;               // q and v
-    Powers powers_{}, rates_{};               // for the current step
-    std::vector<double> value_limits_;
+    const MotionVariation& variation_;  // over lanes, direction d is by N of the variables
+    SeriesOver<Eights> series_;
+    std::vector<Eights> start_;  // copies of q and v
+    Powers powers_{}, rates_{};  // for the current step
     std::vector<Eights> limits_;
+    std::size_t large_ = 0;
     int order_ = 0;
 };
 
@@ -208,8 +200,7 @@ class FlowSensitivityBySeries : public FlowSensitivity {
 std::unique_ptr<FlowSensitivity> make_flow_slope(const Model& model, Mode mode, const TangentLayout& tangent,
                                                  std::span<const double> parameters, const std::vector<bool>& varied,
                                                  double tolerance) {
-    return std::make_unique<FlowSensitivityBySeries>(model.motion(mode).series, mode, tangent, parameters, varied,
-                                                     tolerance);
+    return std::make_unique<FlowSensitivityBySeries>(model, mode, tangent, parameters, varied, tolerance);
 }
 
 // ---- by differences ----

@@ -27,7 +27,7 @@ class FlowSensitivity {
     virtual void slope_after(double span, Mode mode, RowMatrix& S) = 0;
 };
 
-// Computes derivatives from the Taylor series of the motion over numbers with derivatives (theory-derivatives.md 2).
+// Computes derivatives from the Taylor series of the motion with its variational equation (theory-derivatives.md 2).
 // `varied` marks the parameters that may vary; if it is empty, all may.
 std::unique_ptr<FlowSensitivity> make_flow_slope(const Model& model, Mode mode, const TangentLayout& tangent,
                                                  std::span<const double> parameters, const std::vector<bool>& varied,
@@ -54,7 +54,7 @@ class MotionSeries : public SeriesOver<double> {
 };
 
 // Derivatives accurate to a few digits, from differences of series that start nearby. They use the machine code of
-// runs, at a fifth of the cost of numbers with derivatives. Columns of parameters are 0.
+// runs, at a fraction of the cost of accurate derivatives. Columns of parameters are 0.
 class FlowDifference : public FlowSensitivity {
  public:
     FlowDifference(const Model& model, Mode mode, const TangentLayout& tangent, std::span<const double> parameters);

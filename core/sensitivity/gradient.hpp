@@ -91,7 +91,7 @@ class Gradient {
 
  private:
     static constexpr std::size_t lanes = 8;
-    using Number = Jet8<16>;
+    using Number = Jet8;
     // Input number `variable` with value x. It carries a derivative if it is one of the up to `lanes` variables from
     // variables_[first] on, for which this evaluator computes derivatives.
     Number number(double x, std::size_t variable, std::size_t first) const {

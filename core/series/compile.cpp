@@ -11,6 +11,7 @@
 #include "expression/expression.hpp"
 #include "program/machine.hpp"
 #include "series/order.hpp"
+#include "series/recurrence.hpp"
 #include "series/series.hpp"
 
 namespace achilles {
@@ -419,9 +420,71 @@ SeriesProgram::SeriesProgram(const Program& program, std::size_t dof, std::size_
     if (const auto best = best_width()) code_ = OrderCode::of(plan_, *best);
 }
 
-std::shared_ptr<const MachineCode> LaneAccess::machine_code_of(const Program& program, Width vectors) {
+std::shared_ptr<const MachineCode> LaneAccess::machine_code_of(const Program& program, std::optional<Width> vectors) {
+    if (!vectors) return nullptr;
     const auto first = program.slots_.count + static_cast<std::uint32_t>(program.constants_.size() + program.fixed_);
-    return machine_code(std::span(program.instructions_).subspan(program.fixed_), first, Width::eight, vectors);
+    return machine_code(std::span(program.instructions_).subspan(program.fixed_), first, Width::eight, *vectors);
+}
+
+namespace {
+
+// Whether a number depends on some inputs, as a number type.
+struct Dependence {
+    bool any = false;
+
+    Dependence() = default;
+    Dependence(double) {}  // NOLINT: a constant
+    explicit Dependence(bool depends) : any(depends) {}
+#define OF_TWO(op) \
+    friend Dependence operator op(Dependence a, Dependence b) { return Dependence(a.any || b.any); }
+    OF_TWO(+)
+    OF_TWO(-)
+    OF_TWO(*)
+    OF_TWO(/)
+#undef OF_TWO
+    friend Dependence operator-(Dependence a) { return a; }
+    friend Dependence pow(Dependence a, Dependence b) { return a + b; }
+    friend void sine_and_cosine(Dependence a, Dependence& sine, Dependence& cosine) { sine = cosine = a; }
+#define SAME(function) \
+    friend Dependence function(Dependence a) { return a; }
+    SAME(sqrt) SAME(exp) SAME(log) SAME(tan) SAME(asin) SAME(acos) SAME(atan) SAME(sinh) SAME(cosh) SAME(tanh)
+#undef SAME
+};
+
+}  // namespace
+
+VariedNumbers SeriesProgram::dependent_on(const std::vector<bool>& inputs) const {
+    std::vector<Dependence> z(registers_), coefficients(coefficients_.size()), now(plan_.numbers());
+    std::vector<std::array<Dependence, 3>> factors(plan_.rules.size());
+    for (std::size_t i = 0; i < inputs.size(); ++i) z[i] = Dependence(inputs[i]);
+    std::size_t reg = program_.slots_.count + program_.constants_.size();
+    for (const Instruction& in : program_.instructions_)
+        z[reg++] = is_leaf(in.operation) ? Dependence() : z[in.a] + (is_binary(in.operation) ? z[in.b] : Dependence());
+    fix(z.data(), coefficients.data(), factors.data());
+    start(z.data(), coefficients.data(), factors.data());
+    for (std::uint32_t i = 0; i < program_.slots_.parameters_begin; ++i) now[1 + i] = z[i];
+    // Inner sums are of series whose rules come later, too.
+    for (bool changed = true; changed;) {
+        changed = false;
+        const auto set = [&](std::size_t number, Dependence value) {
+            changed = changed || value.any != now[number].any;
+            now[number] = value;
+        };
+        for (std::size_t i = 0; i < plan_.rules.size(); ++i)
+            set(plan_.rules[i].result, value_of(plan_.rules[i], factors[i], now.data()));
+        for (std::size_t i = 0; i < plan_.lanes; ++i) set(plan_.series + i, now[plan_.left[i]] + now[plan_.right[i]]);
+    }
+    VariedNumbers dependent;
+    for (std::size_t i = 0; i < plan_.series; ++i) dependent.series.push_back(now[i].any);
+    for (const auto& [x, y, w] : factors) dependent.factors.push_back({x.any, y.any, w.any});
+    return dependent;
+}
+
+LaneCode LaneCode::of(const SeriesProgram& program, std::optional<Width> vectors, const std::vector<bool>& varied) {
+    LanePlan lanes(program.plan_, program.inner_sums_, varied.empty() ? VariedNumbers() : program.dependent_on(varied));
+    std::shared_ptr<const LaneOrderCode> orders;
+    if (vectors) orders = LaneOrderCode::of(program.plan_, lanes, *vectors);
+    return {std::move(lanes), LaneAccess::machine_code_of(program.program_, vectors), std::move(orders)};
 }
 
 }  // namespace achilles

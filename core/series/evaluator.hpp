@@ -11,7 +11,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "number/jet8.hpp"
 #include "number/lanes.hpp"
 #include "program/machine.hpp"
 #include "series/recurrence.hpp"
@@ -19,23 +18,29 @@
 
 namespace achilles {
 
+// Memory for the table of an evaluator, aligned to a cache line. What is returned is kept for the next table of this
+// size: the system would take back such a block and give it again page by page, which takes as long as some orders.
+void* borrow_table(std::size_t bytes);
+void return_table(void* table, std::size_t bytes);
+
 template <class Number>
 inline constexpr bool is_lanes = false;
 template <std::size_t Bytes>
 inline constexpr bool is_lanes<Lanes<Bytes>> = true;
 
-// Does what the template in recurrence.hpp does, with the widest vectors that the processor has.
-void make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
-                       const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k);
+// Does what SeriesProgram::start() does over eight lanes, with the widest vectors that the processor has.
+void start_of_lanes(const SeriesProgram& program, Double8* registers, const Double8* coefficients,
+                    std::array<Double8, 3>* factors);
 
 // A program over any number type. Over double and lanes it uses machine code if available. Over lanes the constants are
 // those of double; over other types they are as accurate as the type allows.
 template <class Number>
 class ProgramOver {
  public:
-    // Over lanes, machine code uses vectors of four or eight. `registers` is the minimum number of registers.
-    explicit ProgramOver(const Program& program, std::optional<Width> machine_code = {}, std::size_t registers = 0)
-        : program_(&program) {
+    // Over lanes, `code` may be null. `registers` is the minimum number of registers.
+    explicit ProgramOver(const Program& program, std::shared_ptr<const MachineCode> code = {},
+                         std::size_t registers = 0)
+        : program_(&program), code_(std::move(code)) {
         if constexpr (!is_lanes<Number>) {
             evaluator_ = Evaluator<Number>(program);
             numbers().resize(std::max(registers, numbers().size()), Number(0.0));
@@ -45,9 +50,7 @@ class ProgramOver {
             const std::vector<double>& constants = LaneAccess::registers_of(one);
             numbers().resize(std::max(registers, constants.size()), Number(0.0));
             for (std::size_t i = 0; i < constants.size(); ++i) numbers()[i] = constants[i];
-            if (!machine_code) return;
-            code_ = LaneAccess::machine_code_of(program, *machine_code);
-            if (code_) run_ = code_->as<void(Number*)>();
+            if (code_) run_ = code_->template as<void(Number*)>();
         }
     }
 
@@ -90,17 +93,14 @@ class SeriesEvaluator {
 
     // Call fix() before use.
     explicit SeriesEvaluator(const SeriesProgram& program) requires(!is_lanes<Number>)
-        : SeriesEvaluator(&program, code_of(program)) {}
+        : SeriesEvaluator(&program, InnerSums<Number>(program.plan_, program.inner_sums()), code_of(program)) {}
     SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters) requires is_one
         : SeriesEvaluator(program) {
         fix(parameters);
     }
-    // With machine code by vectors of four or eight, or without. Call fix() before use.
-    SeriesEvaluator(const SeriesProgram& program, std::optional<Width> machine_code) requires is_lanes<Number>
-        : SeriesEvaluator(&program, nullptr, machine_code) {
-        if constexpr (is_lanes<Number>)  // clang 14 instantiates this for one too
-            if (machine_code) code_ = LaneOrderCode::of(program.plan_, sums_.plan, *machine_code);
-    }
+    // Call fix() before use.
+    SeriesEvaluator(const SeriesProgram& program, const LaneCode& code) requires is_lanes<Number>
+        : SeriesEvaluator(&program, InnerSums<Number>(code.plan), code.orders, code.start) {}
 
     // Evaluates what depends on parameters only.
     template <class Parameter>
@@ -120,7 +120,12 @@ class SeriesEvaluator {
         zero_.run();
         Number* const sums = tables_.now + program_->plan_.series;
         for (std::size_t i = 0; i < sums_.count(); ++i) sums[i] = 0.0;  // inner sums of order 1
-        program_->start(zero_.numbers().data(), coefficients_.data(), factors_.data());
+        if constexpr (std::is_same_v<Number, Lanes<16>>)
+            start_of_lanes(*program_, reinterpret_cast<Double8*>(zero_.numbers().data()),
+                           reinterpret_cast<const Double8*>(coefficients_.data()),
+                           reinterpret_cast<std::array<Double8, 3>*>(factors_.data()));
+        else
+            program_->start(zero_.numbers().data(), coefficients_.data(), factors_.data());
     }
     // Order 0 of an output. Requires begin().
     const Number& start(std::size_t index) { return zero_.numbers()[program_->outputs_[index]]; }
@@ -142,22 +147,9 @@ class SeriesEvaluator {
         if (code_) return code_->make_orders(tables_, motion, k, last);
         return make_orders(program_->plan_, tables_, motion, k, last);
     }
-    // Orders 1 .. last (last >= 4) of a motion, in rows of q, v and the event functions. `row` points to row 1, where q
-    // and v are given; row 0 precedes it.
-    void extend(Number* row, int last) requires is_lanes<Number> {
-        const SeriesPlan& plan = program_->plan_;
-        if constexpr (is_lanes<Number>)
-            if (code_) {
-                for (std::size_t i = 0; i < inputs_; ++i) tables_.now[1 + i] = row[i];
-                const auto doubles = [](auto* numbers) { return reinterpret_cast<double*>(numbers); };
-                return code_->make_orders(doubles(factors_.data()), doubles(tables_.now), doubles(row - plan.states()),
-                                          last);
-            }
-        for (int k = 1; k <= last; ++k, row += plan.states())
-            make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
-    }
-    // Orders k .. last of a motion, in such rows; `row` is that of order k. Requires all lower orders.
-    void extend(Number* row, int k, int last) requires(!is_lanes<Number>) {
+    // Orders k .. last of a motion, in rows of q, v and the event functions; `row` is that of order k. Requires all
+    // lower orders; for k = 1, q and v in the row. Over lanes, the first call makes order 4 or more.
+    void extend(Number* row, int k, int last) {
         const SeriesPlan& plan = program_->plan_;
         const std::size_t n = plan.coordinates();
         if constexpr (is_one) {
@@ -178,35 +170,42 @@ class SeriesEvaluator {
                 k = extend(motion, k, last) + 1;
             }
         } else {
+            if constexpr (is_lanes<Number>)
+                if (code_) {
+                    if (k == 1) std::copy_n(row, inputs_, tables_.now + 1);
+                    const auto doubles = [](auto* numbers) { return reinterpret_cast<double*>(numbers); };
+                    return code_->make_orders(doubles(factors_.data()), doubles(tables_.now), doubles(row), k, last);
+                }
             for (; k <= last; ++k, row += plan.states())
                 make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
         }
     }
 
  private:
-    static constexpr std::size_t line = SeriesPlan::aligned * sizeof(double);
-
     static std::shared_ptr<const Code> code_of(const SeriesProgram& program) {
         if constexpr (is_one)
             return program.code_;
         else
             return nullptr;
     }
-    SeriesEvaluator(const SeriesProgram* program, std::shared_ptr<const Code> code,
-                    std::optional<Width> machine_code = {})
+    SeriesEvaluator(const SeriesProgram* program, InnerSums<Number> sums, std::shared_ptr<const Code> code,
+                    std::shared_ptr<const MachineCode> code_of_start = {})
         : program_(program),
           inputs_(program->program_.slots_.parameters_begin),
-          zero_(program->program_, machine_code, program->registers_),
+          zero_(program->program_, std::move(code_of_start), program->registers_),
           coefficients_(program->coefficients_.size()),
           factors_(program->plan_.rules.size()),
-          sums_(program->plan_, program->inner_sums()),
+          sums_(std::move(sums)),
           code_(std::move(code)) {
         const std::size_t numbers = program->plan_.numbers();
-        block_ =
-            std::make_unique_for_overwrite<Number[]>(numbers + sums_.row() * (highest_order + 1) + SeriesPlan::aligned);
-        // Aligned to a cache line.
-        const auto past = reinterpret_cast<std::uintptr_t>(block_.get()) % line;
-        Number* const now = block_.get() + (line - past) % line / sizeof(Number);
+        std::size_t size = numbers + sums_.row() * (highest_order + 1);
+        if constexpr (is_lanes<Number>)
+            if (code_) size = code_->numbers();
+        const std::size_t bytes = size * sizeof(Number);
+        auto* const now = static_cast<Number*>(borrow_table(bytes));
+        table_ = {now, {bytes}};
+        static_assert(std::is_trivially_destructible_v<Number>);
+        std::uninitialized_default_construct_n(now, size);
         tables_ = {factors_.data(), now, now + numbers};
         std::fill_n(now, numbers, Number(0.0));
     }
@@ -217,7 +216,11 @@ class SeriesEvaluator {
     std::vector<Number> coefficients_;            // of the program, by index
     std::vector<std::array<Number, 3>> factors_;  // by rule
     InnerSums<Number> sums_;
-    std::unique_ptr<Number[]> block_;
+    struct ReturnTable {
+        std::size_t bytes = 0;
+        void operator()(Number* table) const { return_table(table, bytes); }
+    };
+    std::unique_ptr<Number, ReturnTable> table_;
     SeriesTablesOver<Number> tables_;
     std::shared_ptr<const Code> code_;
 };

@@ -10,6 +10,7 @@
 // functions that are not inlined therefore have Lanes<Bytes> in their names.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -24,23 +25,14 @@
 
 namespace achilles {
 
-struct SeriesPlan;
-template <class Number>
-struct InnerSums;
-template <class Number>
-struct SeriesTablesOver;
-template <std::size_t Bytes>
-struct Jet8;
-
 template <std::size_t Bytes>
 struct LaneKind {
     static std::unique_ptr<LaneStepper> make_stepper(const LanePrograms& programs, double tolerance,
                                                      std::optional<Width> machine_code);
     static void sine_and_cosine(const Double8* angle, Double8* sine, Double8* cosine);
-    // Does what make_motion_order() in recurrence.hpp does, with eight derivatives. Numbers of all vector sizes have
-    // the same layout.
-    static void make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
-                                  const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k);
+    // Does what SeriesProgram::start() does.
+    static void start(const SeriesProgram& program, Double8* registers, const Double8* coefficients,
+                      std::array<Double8, 3>* factors);
 };
 using PortableLanes = LaneKind<16>;
 using Avx2Lanes = LaneKind<32>;

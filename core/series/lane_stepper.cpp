@@ -24,12 +24,10 @@ const bool has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") != 0;
 const auto sine_and_cosine_by_best = has_avx512 ? Avx512Lanes::sine_and_cosine
                                      : has_avx2 ? Avx2Lanes::sine_and_cosine
                                                 : PortableLanes::sine_and_cosine;
-const auto motion_order_by_best = has_avx512 ? Avx512Lanes::make_motion_order
-                                  : has_avx2 ? Avx2Lanes::make_motion_order
-                                             : PortableLanes::make_motion_order;
+const auto start_by_best = has_avx512 ? Avx512Lanes::start : has_avx2 ? Avx2Lanes::start : PortableLanes::start;
 #else
+const auto start_by_best = PortableLanes::start;
 const auto sine_and_cosine_by_best = PortableLanes::sine_and_cosine;
-const auto motion_order_by_best = PortableLanes::make_motion_order;
 #endif
 
 }  // namespace
@@ -54,9 +52,9 @@ void sine_and_cosine_of_lanes(const Double8* angle, Double8* sine, Double8* cosi
     sine_and_cosine_by_best(angle, sine, cosine);
 }
 
-void make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
-                       const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k) {
-    motion_order_by_best(plan, sums, tables, row, k);
+void start_of_lanes(const SeriesProgram& program, Double8* registers, const Double8* coefficients,
+                    std::array<Double8, 3>* factors) {
+    start_by_best(program, registers, coefficients, factors);
 }
 
 std::unique_ptr<LaneStepper> make_lane_stepper(const LanePrograms& programs, double tolerance, Vectors vectors) {

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "number/jet8.hpp"
 #include "number/lanes.hpp"
 #include "number/polynomial.hpp"
 #include "series/lane_kinds.hpp"
@@ -37,11 +36,14 @@ class LaneStepperOver final : public LaneStepper {
     LaneStepperOver(const LanePrograms& programs, double tolerance, std::optional<Width> machine_code)
         : dof_(programs.coordinates),
           // Most flights end long before the end of a series' step.
-          flight_{{programs.flight, machine_code}, {order_of_flights(programs.flight, tolerance, 1.2), false}},
+          flight_{{programs.flight, LaneCode::of(programs.flight, machine_code)},
+                  {order_of_flights(programs.flight, tolerance, 1.2), false}},
           brief_(order_of_flights(programs.flight, tolerance, 0.6), false),
-          contact_{{programs.contact, machine_code},
+          contact_{{programs.contact, LaneCode::of(programs.contact, machine_code)},
                    {best_order(programs.contact, tolerance, costs_of_eight_runs), true}},
-          contact_terms_(ProgramOver<Number>(programs.contact_terms, machine_code), programs.coordinates),
+          contact_terms_(ProgramOver<Number>(programs.contact_terms,
+                                             LaneAccess::machine_code_of(programs.contact_terms, machine_code)),
+                         programs.coordinates),
           step_(dof_, 1, tolerance),
           before_(2 * dof_) {}
 
@@ -307,14 +309,11 @@ void LaneKind<Bytes>::sine_and_cosine(const Double8* angle, Double8* sine, Doubl
 }
 
 template <std::size_t Bytes>
-void LaneKind<Bytes>::make_motion_order(const SeriesPlan& plan, const InnerSums<Jet8<16>>& sums,
-                                        const SeriesTablesOver<Jet8<16>>& tables, Jet8<16>* row, std::size_t k) {
-    using Number = Jet8<Bytes>;
-    static_assert(sizeof(Number) == sizeof(Jet8<16>) && alignof(Number) == alignof(Jet8<16>));
-    const SeriesTablesOver<Number> same{reinterpret_cast<const std::array<Number, 3>*>(tables.factors),
-                                        reinterpret_cast<Number*>(tables.now), reinterpret_cast<Number*>(tables.rows)};
-    achilles::make_motion_order<Number>(plan, reinterpret_cast<const InnerSums<Number>&>(sums), same,
-                                        reinterpret_cast<Number*>(row), k);
+void LaneKind<Bytes>::start(const SeriesProgram& program, Double8* registers, const Double8* coefficients,
+                            std::array<Double8, 3>* factors) {
+    LaneAccess::start(program, reinterpret_cast<Lanes<Bytes>*>(registers),
+                      reinterpret_cast<const Lanes<Bytes>*>(coefficients),
+                      reinterpret_cast<std::array<Lanes<Bytes>, 3>*>(factors));
 }
 
 }  // namespace achilles

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <map>
+#include <mutex>
+#include <new>
 #include <set>
 
 #include "series/evaluator.hpp"
@@ -24,12 +26,13 @@ int make_orders(const SeriesPlan& plan, const SeriesTables& tables, MotionOrders
     }
 }
 
-LanePlan::LanePlan(const SeriesPlan& plan, std::size_t inner_sums) {
+LanePlan::LanePlan(const SeriesPlan& plan, std::size_t inner_sums, VariedNumbers varied_numbers)
+    : varied(std::move(varied_numbers)) {
     std::map<std::pair<std::uint32_t, bool>, std::uint32_t> places;
     const auto place = [&](std::uint32_t series, bool weighted) {
         const auto [found, fresh] =
             places.emplace(std::pair(series, weighted), static_cast<std::uint32_t>(stored.size()));
-        if (fresh) stored.push_back({series, weighted});
+        if (fresh) stored.push_back({series, weighted, !varied.series.empty() && !varied.series[series]});
         return found->second;
     };
     // The factors of an unweighted sum may be swapped. Few distinct factors on each side mean few loads.
@@ -41,11 +44,57 @@ LanePlan::LanePlan(const SeriesPlan& plan, std::size_t inner_sums) {
         const bool is_weighted = i < plan.weighted;
         LaneSum sum{place(plan.left[i], is_weighted), place(plan.right[i], false)};
         const LaneSum turned{sum.right, sum.left};
-        if (!is_weighted && more(turned) < more(sum)) sum = turned;
+        const bool left_uniform = stored[sum.left].uniform, right_uniform = stored[sum.right].uniform;
+        if (!is_weighted && (left_uniform != right_uniform ? left_uniform : more(turned) < more(sum))) sum = turned;
         on_left.insert(sum.left);
         on_right.insert(sum.right);
         sums.push_back(sum);
     }
+}
+
+namespace {
+
+constexpr auto line = static_cast<std::align_val_t>(SeriesPlan::aligned * sizeof(double));
+
+struct SpareTables {
+    struct Spare {
+        void* table;
+        std::size_t bytes;
+    };
+    static constexpr std::size_t most = 16, smallest = 1 << 15, largest = 1 << 20;
+    std::mutex mutex;
+    std::vector<Spare> spares;
+};
+// It is never destroyed, because an evaluator may live as long as the program.
+SpareTables& spare_tables() {
+    static auto* const tables = new SpareTables;
+    return *tables;
+}
+
+}  // namespace
+
+void* borrow_table(std::size_t bytes) {
+    SpareTables& all = spare_tables();
+    {
+        const std::scoped_lock lock(all.mutex);
+        for (SpareTables::Spare& spare : all.spares)
+            if (spare.bytes == bytes) {
+                void* const table = spare.table;
+                spare = all.spares.back();
+                all.spares.pop_back();
+                return table;
+            }
+    }
+    return ::operator new(bytes, line);
+}
+
+void return_table(void* table, std::size_t bytes) {
+    SpareTables& all = spare_tables();
+    if (bytes >= SpareTables::smallest && bytes <= SpareTables::largest) {
+        const std::scoped_lock lock(all.mutex);
+        if (all.spares.size() < SpareTables::most) return all.spares.push_back({table, bytes});
+    }
+    ::operator delete(table, line);
 }
 
 template class SeriesEvaluator<double>;

@@ -120,6 +120,12 @@ class OrderCode {
     std::vector<double> weights_;
 };
 
+// Which series, and which factors of rules, differ between lanes. If empty, all do.
+struct VariedNumbers {
+    std::vector<bool> series;
+    std::vector<std::array<bool, 3>> factors;
+};
+
 // The inner sums when eight runs are computed at once: what is stored of each order for the inner sums of later orders,
 // and which stored numbers each sum multiplies.
 //
@@ -129,15 +135,17 @@ class OrderCode {
 struct LanePlan {
     struct StoredSums {
         std::uint32_t series;
-        bool weighted;  // multiplied by the order
+        bool weighted;         // multiplied by the order
+        bool uniform = false;  // the same in all lanes
     };
     struct LaneSum {
         std::uint32_t left, right;  // indices into `stored`
     };
     std::vector<StoredSums> stored;
     std::vector<LaneSum> sums;  // in the order of the plan: the first plan.weighted are weighted
+    VariedNumbers varied;
 
-    LanePlan(const SeriesPlan& plan, std::size_t inner_sums);
+    LanePlan(const SeriesPlan& plan, std::size_t inner_sums, VariedNumbers varied_numbers = {});
 };
 
 // Machine code for the orders of all series of eight runs at once. Its results have the same bits as recurrence.hpp.
@@ -147,21 +155,25 @@ class LaneOrderCode {
     // available for such vectors, or if the plan has too many rules.
     static std::shared_ptr<const LaneOrderCode> of(const SeriesPlan& plan, const LanePlan& lanes, Width vectors);
 
-    // Computes orders 1 .. last, last >= 4. On entry `now` holds order 1 of q and v, and inner sums of zero. All
-    // numbers are eight doubles. `now` holds one order of the series and the inner sums (SeriesPlan::numbers()), then
-    // the stored rows from row 0 on. Row k of `motion` is order k of q, v and the event functions. `factors` has three
-    // numbers per rule.
-    void make_orders(const double* factors, double* now, double* motion, int last) const {
+    // The size of `now` below, in numbers of eight doubles.
+    std::size_t numbers() const { return (first_row_ + OrderCode::highest_order * row_) / Double8::count; }
+    // Computes orders 1 .. last, last >= 4, or orders k .. last after such a call. On entry `now` holds order 1 of q
+    // and v, and inner sums of zero. All numbers are eight doubles. `now` holds one order of the series and the inner
+    // sums (SeriesPlan::numbers()), then the stored rows from row 1 on. `motion` is the row of order k of q, v and the
+    // event functions; that of order k - 1 precedes it. `factors` has three numbers per rule.
+    void make_orders(const double* factors, double* now, double* motion, int k, int last) const {
         const auto* const weights = weights_.data();
-        function_(now, factors, now + first_row_, weights->data(), weights[last - 1].data(), motion + states_);
+        const auto below = static_cast<std::size_t>(k - 1);
+        (k == 1 ? first_ : later_)(now, factors, now + first_row_ + below * row_, weights[below].data(),
+                                   weights[last - 1].data(), motion);
     }
 
  private:
     using Function = void(double* now, const double* factors, double* row, const double* weights, const double* last,
                           double* motion);
     std::shared_ptr<const MachineCode> code_;
-    Function* function_ = nullptr;
-    std::size_t first_row_ = 0, states_ = 0;      // in doubles
+    Function *first_ = nullptr, *later_ = nullptr;
+    std::size_t first_row_ = 0, row_ = 0;         // in doubles
     std::vector<std::array<double, 3>> weights_;  // for each order k: k, 1/(k + 1), 1/k
 };
 

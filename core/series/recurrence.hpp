@@ -154,6 +154,7 @@ struct InnerSums {
     LanePlan plan;
 
     // The first `inner_sums` lanes of the plan are used.
+    explicit InnerSums(LanePlan lanes) : plan(std::move(lanes)) {}
     InnerSums(const SeriesPlan& series, std::size_t inner_sums) : plan(series, inner_sums) {}
     std::size_t count() const { return plan.sums.size(); }
     std::size_t row() const { return plan.stored.size(); }
@@ -184,8 +185,8 @@ struct InnerSums<double> {
     std::size_t row() const { return plan.row(); }
     // The series whose coefficients are entry i of the stored rows: the left factors of all sums, then the right ones.
     LanePlan::StoredSums stored(std::size_t i) const {
-        if (i < plan.lanes) return {plan.left[i], i < plan.weighted};
-        return {plan.right[i - plan.lanes], false};
+        if (i < plan.lanes) return {plan.left[i], i < plan.weighted, false};
+        return {plan.right[i - plan.lanes], false, false};
     }
     std::size_t left(std::size_t i) const { return i; }
     std::size_t right(std::size_t i) const { return plan.lanes + i; }
@@ -227,10 +228,10 @@ void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const Ser
         now[plan.rules[i].result] = value_of(plan.rules[i], tables.factors[i], now);
     const std::size_t width = sums.row();
     for (std::size_t i = 0; i < width; ++i) {
-        const auto [series, weighted] = sums.stored(i);
+        const LanePlan::StoredSums stored = sums.stored(i);
         Number& place = tables.rows[width * k + i];
-        place = now[series];
-        if (weighted) place = place * static_cast<double>(k);
+        place = now[stored.series];
+        if (stored.weighted) place = place * static_cast<double>(k);
     }
     Number* const totals = now + plan.series;
     for (std::size_t i = 0; i < sums.count(); i += Pack4::count) {

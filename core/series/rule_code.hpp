@@ -1,6 +1,8 @@
 // Machine code for one rule, for any vector width.
 #pragma once
 
+#include <array>
+
 #include "program/assembler.hpp"
 #include "series/order.hpp"
 
@@ -13,7 +15,9 @@ class RuleWriter {
  public:
     using Index = std::ptrdiff_t;  // in doubles
 
-    RuleWriter(Assembler& code, const Xbyak::Reg64& factors) : code_(code), factors_(factors) {}
+    // `uniform` tells of each factor of the rule whether it is the same in all lanes.
+    RuleWriter(Assembler& code, const Xbyak::Reg64& factors, const std::array<bool, 3>& uniform = {})
+        : code_(code), factors_(factors), uniform_(uniform) {}
 
     // Storing the result can be omitted if its register keeps it for as long as it is needed.
     void write(const SeriesRule& rule, Index first, bool store = true) {
@@ -24,9 +28,8 @@ class RuleWriter {
         for (int i = 2; i >= 0; --i) {
             if (operands[i] == 0) continue;
             const bool alone = sum.kind == Kind::none;
-            const PartialSum term =
-                product(rule.known[i], operands[i], first + code_.place(static_cast<std::uint32_t>(i)),
-                        alone ? result : code_.vector(0));
+            const PartialSum term = product(rule.known[i], operands[i], factor(first, static_cast<std::uint32_t>(i)),
+                                            alone ? result : code_.vector(0));
             sum = alone ? term : total(sum, term, result);
         }
         if (sum.kind == Kind::none) code_.zero(result);
@@ -43,11 +46,18 @@ class RuleWriter {
         std::uint32_t number = 0;
     };
 
+    // A uniform factor is loaded as one double: a load of eight takes twice as long.
+    Xbyak::Address factor(Index first, std::uint32_t i) const {
+        const Index place = first + code_.place(i);
+        if (!uniform_[i] || code_.width() != Width::eight) return at(factors_, place);
+        return Xbyak::util::ptr_b[factors_ + static_cast<std::size_t>(8 * place)];
+    }
+
     // A factor times its number, in register `to` unless the factor is known to be 1 or -1.
-    PartialSum product(std::int8_t known, std::uint32_t number, Index factor, const Xbyak::Xmm& to) {
+    PartialSum product(std::int8_t known, std::uint32_t number, const Xbyak::Address& factor, const Xbyak::Xmm& to) {
         if (known > 0) return {PartialSum::Kind::number, Xbyak::Xmm(), number};
         if (known < 0) return {PartialSum::Kind::negative, Xbyak::Xmm(), number};
-        code_.apply(Assembler::vmul, to, code_.held_or(to, number), at(factors_, factor));
+        code_.apply(Assembler::vmul, to, code_.held_or(to, number), factor);
         return {PartialSum::Kind::in_register, to, 0};
     }
 
@@ -74,6 +84,7 @@ class RuleWriter {
 
     Assembler& code_;
     Xbyak::Reg64 factors_;
+    std::array<bool, 3> uniform_;
 };
 
 }  // namespace achilles

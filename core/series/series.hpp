@@ -16,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "program/program.hpp"
@@ -44,6 +45,7 @@ class SeriesProgram {
     friend class SeriesEvaluator;
     friend class SeriesCompiler;
     friend class LaneAccess;
+    friend struct LaneCode;
 
     // A number that depends on parameters only: a register of the program, or an operation on two other coefficients.
     struct Coefficient {
@@ -86,6 +88,9 @@ class SeriesProgram {
     template <class Scalar>
     void start(Scalar* registers, const Scalar* coefficients, std::array<Scalar, 3>* factors) const;
 
+    // What depends on these inputs.
+    VariedNumbers dependent_on(const std::vector<bool>& inputs) const;
+
     Program program_;
     bool partial_ = false;
     std::vector<Coefficient> coefficients_;  // the first is 1
@@ -99,11 +104,27 @@ class SeriesProgram {
     std::shared_ptr<const OrderCode> code_;  // may be null
 };
 
+// How a series program is evaluated over eight lanes, compiled once. Machine code is null where there is none.
+struct LaneCode {
+    LanePlan plan;
+    std::shared_ptr<const MachineCode> start;  // order 0
+    std::shared_ptr<const LaneOrderCode> orders;
+    // By vectors of four or eight, or none.
+    // `varied` tells of each input whether it differs between the lanes; if empty, all do.
+    static LaneCode of(const SeriesProgram& program, std::optional<Width> vectors,
+                       const std::vector<bool>& varied = {});
+};
+
 // Access to the internals of programs and series programs, for evaluators over any number type.
 class LaneAccess {
  public:
-    // Machine code over lanes for the moving part of a program, with vectors of four or eight; may be null.
-    static std::shared_ptr<const MachineCode> machine_code_of(const Program& program, Width vectors);
+    // Machine code over lanes for the moving part of a program, with vectors of four or eight, or none; may be null.
+    static std::shared_ptr<const MachineCode> machine_code_of(const Program& program, std::optional<Width> vectors);
+    template <class Scalar>
+    static void start(const SeriesProgram& series, Scalar* registers, const Scalar* coefficients,
+                      std::array<Scalar, 3>* factors) {
+        series.start(registers, coefficients, factors);
+    }
     static const SeriesPlan& plan_of(const SeriesProgram& series) { return series.plan_; }
     static std::size_t moving_inputs(const Program& program) { return program.slots_.parameters_begin; }
     template <class Number>

@@ -1,10 +1,10 @@
-// Taylor coefficients of a motion over any number type, row by row: double as in runs, intervals for proofs, numbers
-// with derivatives for sensitivities.
+// Taylor coefficients of a motion over any number type, row by row: double as in runs, intervals for proofs, eight lanes
+// for derivatives in eight directions.
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "series/evaluator.hpp"
 
@@ -15,13 +15,14 @@ class SeriesOver {
  public:
     static constexpr int highest_order = SeriesEvaluator<Number>::highest_order;
 
-    // Call fix() before use. The program must outlive this object.
-    explicit SeriesOver(const SeriesProgram& program)
+    // Call fix() before use. The program must outlive this object. Over lanes, its code follows (LaneCode).
+    template <class... Code>
+    explicit SeriesOver(const SeriesProgram& program, const Code&... code)
         : dof_(LaneAccess::plan_of(program).coordinates()),
           events_(program.events()),
           width_(2 * dof_ + events_),
-          series_(program),
-          rows_(width_ * (highest_order + 2)) {}
+          series_(program, code...),
+          rows_(std::make_unique_for_overwrite<Number[]>(width_ * (highest_order + 2))) {}
 
     // Evaluates what depends on parameters only.
     void fix(std::span<const Number> parameters) { series_.fix(parameters); }
@@ -39,7 +40,7 @@ class SeriesOver {
         }
     }
     // The same in steps: begin() computes order 0 of all components and order 1 of the state; extend() computes orders
-    // k .. last of all, k >= 1, and requires all lower orders.
+    // k .. last of all, k >= 1, and requires all lower orders. Over lanes, the first call makes order 4 or more.
     void begin(const Number* state, const Number& time) {
         std::copy_n(state, 2 * dof_, row(0));
         series_.begin(row(0), time);
@@ -57,11 +58,11 @@ class SeriesOver {
     const Number& start(std::size_t index) { return series_.start(index); }
 
  private:
-    Number* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width_; }
+    Number* row(int k) { return rows_.get() + static_cast<std::size_t>(k) * width_; }
 
     std::size_t dof_, events_, width_;
     SeriesEvaluator<Number> series_;
-    std::vector<Number> rows_;
+    std::unique_ptr<Number[]> rows_;
 };
 
 }  // namespace achilles

@@ -355,7 +355,7 @@ class FixedOrder {
     FixedOrder(int order, bool ends_late) : order_(order), ends_late_(ends_late) {}
 
     int expand(TaylorStep<Number>& step, SeriesEvaluator<Number>& series, const Number&) const {
-        series.extend(step.row(1), order_);
+        series.extend(step.row(1), 1, order_);
         step.give_rates();
         return order_;
     }

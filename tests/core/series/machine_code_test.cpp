@@ -407,7 +407,7 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
                 motion.largest = motion.row;
                 for (int k = 2; k <= last; ++k) evaluator.extend(motion, k, k);
             } else {
-                evaluator.extend(rows.data() + width, last);
+                evaluator.extend(rows.data() + width, 1, last);
             }
             return rows;
         };
@@ -419,7 +419,7 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
         }
         std::vector<Lanes<16>> fixed(parameters.begin(), parameters.end());
         const auto eight_by = [&](std::optional<Width> machine_code) {
-            SeriesEvaluator<Lanes<16>> evaluator(series, machine_code);
+            SeriesEvaluator<Lanes<16>> evaluator(series, LaneCode::of(series, machine_code));
             evaluator.fix(std::span<const Lanes<16>>(fixed));
             return rows_of(std::move(evaluator));
         };
