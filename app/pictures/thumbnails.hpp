@@ -28,7 +28,7 @@ class Thumbnails {
     // picture.
     Thumbnails(std::function<std::filesystem::path(const std::string&)> find, bool waits);
     // `ready` is called on another thread when a thumbnail is finished.
-    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
+    void on_ready(const std::function<void()>& ready) { worker_.on_ready(ready); }
 
     // Null while it is being computed. Only systems requested since the last update() are computed, in order of
     // request.

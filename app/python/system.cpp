@@ -176,10 +176,9 @@ std::vector<std::pair<std::string, std::string>> equations_of(const PythonSystem
         }
         std::string right;
         for (const auto& row : block.rows) {
-            for (std::size_t i = 0; i < row.size(); ++i) right += (i == 0 ? "" : " & ") + row[i];
-            right += " \\\\ ";
+            right += fmt::format("{} \\\\ ", fmt::join(row, " & "));
         }
-        right = is_matrix ? "\\begin{pmatrix} " + right + "\\end{pmatrix}" : block.right;
+        right = is_matrix ? fmt::format("\\begin{{pmatrix}} {}\\end{{pmatrix}}", right) : block.right;
         equations.emplace_back(std::exchange(words, ""),
                                block.words.latex + (block.words.latex.empty() ? "" : " = ") + right);
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <deque>
+#include <limits>
 #include <thread>
 
 #include "system/input_error.hpp"
@@ -27,7 +28,7 @@ class WorkerThreads {
 #if defined(ACHILLES_MOST_THREADS)
     static constexpr std::size_t most_threads = ACHILLES_MOST_THREADS;
 #else
-    static constexpr std::size_t most_threads = -1;
+    static constexpr std::size_t most_threads = std::numeric_limits<std::size_t>::max();
 #endif
 
     void start_thread() {

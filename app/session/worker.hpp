@@ -44,9 +44,9 @@ class Worker {
     Worker& operator=(const Worker&) = delete;
 
     // `ready` is called on the job's thread each time a result has become ready.
-    void on_ready(std::function<void()> ready) {
+    void on_ready(const std::function<void()>& ready) {
         const std::lock_guard lock(state_->mutex);
-        state_->ready = std::move(ready);
+        state_->ready = ready;
     }
 
     // Starts a job. The job under way is asked to stop, and a result not taken yet is dropped.
@@ -193,7 +193,7 @@ class Job {
         return true;
     }
     // `ready` is called on another thread when update() would receive a result.
-    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
+    void on_ready(const std::function<void()>& ready) { worker_.on_ready(ready); }
 
     // Monitor of the work under way; null if there is none.
     const Monitor* under_way() const { return monitor_.get(); }

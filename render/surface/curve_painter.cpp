@@ -203,7 +203,7 @@ void CurvePainter::load() {
     std::vector<GLuint> indices;
     indices.reserve(6 * indexed_);
     for (std::size_t quad = 0; quad < indexed_; ++quad)
-        for (const std::size_t corner : {0, 1, 2, 2, 1, 3}) indices.push_back(static_cast<GLuint>(4 * quad + corner));
+        for (const GLuint corner : {0u, 1u, 2u, 2u, 1u, 3u}) indices.push_back(static_cast<GLuint>(4 * quad) + corner);
     gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(GLuint)), indices.data(),
                    GL_STATIC_DRAW);
 }

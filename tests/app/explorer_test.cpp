@@ -148,7 +148,7 @@ TEST(Explorer, TellsWhereTheSliderOfGIs) {
     ASSERT_LE(x + width, 1280);
     ASSERT_GE(width, 50);  // a tenth of it exceeds the click tolerance
 
-    hands.hand.mouse_x = x + width / 3;
+    hands.hand.mouse_x = x + width / 3.0;
     hands.hand.mouse_y = y;
     hands.rest(2);
     hands.hand.left = true;
@@ -156,7 +156,7 @@ TEST(Explorer, TellsWhereTheSliderOfGIs) {
     std::vector<double> followed;
     for (int step = 0; step <= 4; ++step) {
         if (step == 0) hands.hand.mouse_x += 4.0;  // a press without motion may start a double click
-        if (step > 0) hands.hand.mouse_x = x + width / 3 + step * width / 10;
+        if (step > 0) hands.hand.mouse_x = x + width / 3.0 + step * width / 10.0;
         hands.rest(2);
         followed.push_back(hands.session.run().parameters[1]);
     }

@@ -11,7 +11,7 @@ namespace {
 
 using test::Hands;
 
-void press_together(Hands& hands, std::vector<int> codes) {
+void press_together(Hands& hands, const std::vector<int>& codes) {
     for (const int code : codes) {
         hands.hand.keys.push_back(code);
         hands.rest(1);

@@ -298,7 +298,7 @@ void find_faults(const json& value, const json& schema, const std::string& at, s
                 if (said.is_boolean())
                     fault("has " + key);
                 else
-                    find_faults(member, said, at + "/" + key, faults);
+                    find_faults(member, said, fmt::format("{}/{}", at, key), faults);
             }
         } else if (word == "minItems" || word == "maxItems") {
             const auto limit = said.get<std::size_t>();
@@ -310,10 +310,10 @@ void find_faults(const json& value, const json& schema, const std::string& at, s
     if (value.is_object() && schema.contains("properties"))
         for (const auto& [key, member] : value.items())
             if (schema["properties"].contains(key))
-                find_faults(member, schema["properties"][key], at + "/" + key, faults);
+                find_faults(member, schema["properties"][key], fmt::format("{}/{}", at, key), faults);
     if (value.is_array() && schema.contains("items"))
         for (std::size_t i = 0; i < value.size(); ++i)
-            find_faults(value[i], schema["items"], at + "/" + std::to_string(i), faults);
+            find_faults(value[i], schema["items"], fmt::format("{}/{}", at, i), faults);
 }
 
 std::vector<std::string> faults_of(const json& value, const std::string& schema) {
