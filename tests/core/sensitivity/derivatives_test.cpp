@@ -1,6 +1,7 @@
 // Derivatives of whole runs against pinned numbers, and runs without derivatives.
 #include "sensitivity/derivatives.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/systems.hpp"
@@ -52,6 +53,26 @@ void expect_row(const Values& found, const Row& expected, double relative, const
     for (std::size_t k = 0; k < expected.size(); ++k)
         EXPECT_NEAR(found[static_cast<Eigen::Index>(k)], expected[k], relative * std::max(std::abs(expected[k]), 1e-3))
             << what << ", direction " << k;
+}
+
+// The parameter a of a force a/1000 has derivatives a thousand times smaller than those by k, computed beside them.
+TEST(Derivatives, OfASmallForceAreAsAccurateAsThoseOfALargeOne) {
+    const auto by_second_parameter = [](const std::string& force, double value) {
+        const auto model =
+            typed(fmt::format("title = \"small\"\ncoordinate = [{{name = \"x\", start = 1.0}}]\n"
+                              "parameter = [{{name = \"k\", value = 1.0}}, {{name = \"a\", value = {}}}]\n"
+                              "lagrangian = {{kinetic = \"x'^2/2\", potential = \"-k*cos(x) + {}*sin(3*x)\"}}\n"
+                              "run = {{end_time = 20.0, tolerance = 1e-8}}\n",
+                              value, force));
+        const auto d = differentiate(simulate(model, model->default_run()));
+        return std::pair(d.end->q(0, 3), d.end->q(0, 2));
+    };
+    const auto [small, beside] = by_second_parameter("a/1000", 1.0);
+    const auto [large, same] = by_second_parameter("a", 0.001);
+    EXPECT_GT(std::abs(beside), 0.5);
+    EXPECT_LT(std::abs(small), 0.1);
+    EXPECT_NEAR(beside, same, 1e-6 * std::abs(same));
+    EXPECT_NEAR(small, large / 1000.0, 1e-6 * std::abs(small));
 }
 
 // theory-derivatives.md 11. The fifth parameter is the ball's mass, which affects nothing.

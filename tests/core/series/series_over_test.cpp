@@ -54,12 +54,12 @@ TEST(SeriesOver, HasTheSameBitsByMachineCodeAndByAnyNumberOfOrdersAtOnce) {
 }
 
 TEST(SpareTables, AreLentAgainForTheSameSize) {
-    constexpr std::size_t size = 3 << 15, other_size = 2 << 15;
+    constexpr std::size_t size = 3 << 15, larger_size = 4 << 15;
     void* const table = borrow_table(size);
     return_table(table, size);
-    void* const smaller = borrow_table(other_size);
-    EXPECT_NE(smaller, table);
-    return_table(smaller, other_size);
+    void* const larger = borrow_table(larger_size);
+    EXPECT_NE(larger, table);
+    return_table(larger, larger_size);
     void* const again = borrow_table(size);
     EXPECT_EQ(again, table);
     void* const second = borrow_table(size);
