@@ -135,8 +135,8 @@ class Graph {
     std::unique_ptr<Table> table_;
 };
 
-// The derivatives along a direction, in one pass over the graph: of each expression, the sum of d(expression)/d(symbol
-// of slots[i]) direction[i].
+// The derivative of each expression along a direction: the sum over i of direction[i] times the derivative by the symbol
+// of slots[i]. All are taken in one pass over the graph.
 std::vector<Expression> derivative_along(std::span<const Expression> expressions, std::span<const std::uint32_t> slots,
                                          std::span<const Expression> direction);
 // d(expression)/d(symbol `slot`). For a list, all derivatives are taken in one pass.

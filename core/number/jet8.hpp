@@ -8,7 +8,7 @@
 
 namespace achilles {
 
-// Its vectors are those of every processor. The loops of Jet<double, 8> take longer.
+// It uses the vectors that every processor has. The loops of Jet<double, 8> are slower.
 struct Jet8 {
     using Component = double;
     using Slopes = Lanes<16>;

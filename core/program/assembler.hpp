@@ -104,8 +104,8 @@ class Assembler : public Xbyak::CodeGenerator {
         hold(index, reg);
         return vector(reg);
     }
-    // From now on, a result is stored only if its register is reused while it is still needed. `last_use` gives, by
-    // index, the last position at which it is; set_position() that of the code that follows.
+    // From now on, a result is stored only if its register is reused while the result is still needed. `last_use` gives
+    // the last position at which each number is used. set_position() gives the position of the code that follows.
     void store_when_needed(std::vector<std::size_t> last_use) { last_use_ = std::move(last_use); }
     void set_position(std::size_t position) { position_ = position; }
     // The register that caches a number, if any.
@@ -230,7 +230,8 @@ class Assembler : public Xbyak::CodeGenerator {
     Xbyak::Reg64 numbers_;
     unsigned free_, end_ = 16;
     std::ptrdiff_t doubles_;  // per number
-    Width wide_, width_;      // of all code, and of that which is written now
+    Width wide_;              // width of the vectors of this code
+    Width width_;             // width of the instructions that are being written
     std::ptrdiff_t part_ = 0;
     unsigned results_ = 0;
     std::vector<std::size_t> last_use_;  // empty if the caller stores all results

@@ -63,14 +63,13 @@ class FlowSensitivityBySeries : public FlowSensitivity {
         }
         series_.begin(start_.data(), state.t);
         // Stop when the last term is small compared with the first few, and the one before nearly.
-        const int least = std::clamp(min_order, first_few + 1, highest) - 1;
-        int made = least;
-        series_.extend(1, made);
+        order_ = std::clamp(min_order, first_few + 1, highest) - 1;
+        series_.extend(1, order_);
         raise_to_powers(length);
         set_limits();
-        order_ = least;
         for (bool before = is_small(order_, nearly); order_ < highest; before = is_small(order_, nearly)) {
-            if (++order_ > made) series_.extend(order_, made = order_);
+            ++order_;
+            series_.extend(order_, order_);
             if (before && is_small(order_, 1.0)) return length;
         }
         // Otherwise shorten the step, at which the last terms fall at least this fast; but not below the length where

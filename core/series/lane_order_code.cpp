@@ -162,7 +162,7 @@ class LaneOrderWriter {
         add_up(k);
     }
 
-    // Series that an order reads as the one before left them.
+    // The series of which an order reads the value at the order before, until it replaces it.
     std::vector<std::uint32_t> read_in_next_order() const {
         std::vector<std::uint32_t> all(plan_.outputs.begin(),
                                        plan_.outputs.begin() + static_cast<Index>(plan_.coordinates()));
@@ -199,7 +199,7 @@ class LaneOrderWriter {
         for (const std::uint32_t output : plan_.outputs) place_with_operands(rule_of[output]);
         for (std::uint32_t i = 0; i < plan_.rules.size(); ++i) place_with_operands(i);
     }
-    // The last rule that uses each series; for those that are used after the rules, their number.
+    // The position of the last rule that uses each series. It is the number of rules if a series is used after them.
     std::vector<std::size_t> last_uses() const {
         std::vector<std::size_t> last(plan_.series, 0);
         const auto use = [&](std::uint32_t number, std::size_t position) {
@@ -237,7 +237,7 @@ class LaneOrderWriter {
     void add_up(unsigned k) {
         std::span<const std::uint32_t> sums(by_left_);
         std::span<const Pack> packs(packs_);
-        if (code_.part() != 0) {  // the first part has added them up
+        if (code_.part() != 0) {  // the first part has added up the packs
             packs = {};
             spread_packs();
         }
@@ -375,7 +375,8 @@ class LaneOrderWriter {
         }
     }
 
-    // Copies these sums to the second half of their numbers. Until here, it held those of this order.
+    // The first part has stored these sums in the first half of their numbers only, because the second part still needed
+    // those of the order before. This copies them into the second half.
     void spread_packs() {
         for (const Pack& pack : packs_)
             for (const std::uint32_t i : pack.sums) {
@@ -425,10 +426,10 @@ class LaneOrderWriter {
     const SeriesPlan& plan_;
     const LanePlan& lanes_;
     Assembler code_;
-    std::vector<std::uint32_t> order_;                             // of the rules
+    std::vector<std::uint32_t> order_;                             // the rules, in the order of the code
     Index stride_ = 0;                                             // size of a row of stored numbers
-    std::vector<Index> places_;                                    // of each stored number in a row
-    std::vector<std::pair<std::uint32_t, Index>> uniform_places_;  // all places of the uniform ones
+    std::vector<Index> places_;                                    // offset of each stored number in its row
+    std::vector<std::pair<std::uint32_t, Index>> uniform_places_;  // all offsets of the uniform numbers
     std::vector<Pack> packs_;
     std::vector<std::uint32_t> by_left_;  // the other sums, by left factor
     bool many_registers_;

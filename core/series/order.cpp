@@ -62,6 +62,7 @@ struct SpareTables {
         std::size_t bytes;
     };
     static constexpr std::size_t most = 16, smallest = 1 << 15, largest = 1 << 20;
+    static bool are_kept(std::size_t bytes) { return bytes >= smallest && bytes <= largest; }
     std::mutex mutex;
     std::vector<Spare> spares;
 };
@@ -74,8 +75,8 @@ SpareTables& spare_tables() {
 }  // namespace
 
 void* borrow_table(std::size_t bytes) {
-    SpareTables& all = spare_tables();
-    {
+    if (SpareTables::are_kept(bytes)) {
+        SpareTables& all = spare_tables();
         const std::scoped_lock lock(all.mutex);
         for (SpareTables::Spare& spare : all.spares)
             if (spare.bytes == bytes) {
@@ -89,8 +90,8 @@ void* borrow_table(std::size_t bytes) {
 }
 
 void return_table(void* table, std::size_t bytes) {
-    SpareTables& all = spare_tables();
-    if (bytes >= SpareTables::smallest && bytes <= SpareTables::largest) {
+    if (SpareTables::are_kept(bytes)) {
+        SpareTables& all = spare_tables();
         const std::scoped_lock lock(all.mutex);
         if (all.spares.size() < SpareTables::most) return all.spares.push_back({table, bytes});
     }

@@ -88,7 +88,7 @@ class SeriesProgram {
     template <class Scalar>
     void start(Scalar* registers, const Scalar* coefficients, std::array<Scalar, 3>* factors) const;
 
-    // What depends on these inputs.
+    // The series and the factors that depend on these inputs.
     VariedNumbers dependent_on(const std::vector<bool>& inputs) const;
 
     Program program_;
@@ -104,13 +104,14 @@ class SeriesProgram {
     std::shared_ptr<const OrderCode> code_;  // may be null
 };
 
-// How a series program is evaluated over eight lanes, compiled once. Machine code is null where there is none.
+// What the evaluation of a series program over eight lanes needs. It is compiled once. Machine code is null if there is
+// none.
 struct LaneCode {
     LanePlan plan;
     std::shared_ptr<const MachineCode> start;  // order 0
     std::shared_ptr<const LaneOrderCode> orders;
-    // By vectors of four or eight, or none.
-    // `varied` tells of each input whether it differs between the lanes; if empty, all do.
+    // Compiles machine code for vectors of four or eight doubles, or none. `varied` tells whether each input differs
+    // between the lanes; if it is empty, all inputs do.
     static LaneCode of(const SeriesProgram& program, std::optional<Width> vectors,
                        const std::vector<bool>& varied = {});
 };

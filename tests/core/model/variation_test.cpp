@@ -201,8 +201,8 @@ std::vector<std::uint64_t> bits_of_series(const Model& model, const MotionVariat
     return bits;
 }
 
-// The code keeps in a register, or stores as one double, what is the same in all lanes. The systems have few rules and
-// many, so that all, some and few results have registers.
+// Machine code treats numbers that are the same in all lanes differently. In these systems all results, some of them, or
+// only few of them fit in registers.
 TEST(Variation, HasTheSameBitsByVectorsOfEverySize) {
     for (const char* name : {"ball_on_sine", "double_pendulum", "ball_in_gusts", "triple_pendulum", "kneed_leg"}) {
         const auto model = test::load(name);
