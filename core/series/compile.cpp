@@ -435,13 +435,9 @@ struct Dependence {
     Dependence() = default;
     Dependence(double) {}  // NOLINT: a constant
     explicit Dependence(bool depends) : any(depends) {}
-#define OF_TWO(op) \
-    friend Dependence operator op(Dependence a, Dependence b) { return Dependence(a.any || b.any); }
-    OF_TWO(+)
-    OF_TWO(-)
-    OF_TWO(*)
-    OF_TWO(/)
-#undef OF_TWO
+    friend Dependence operator+(Dependence a, Dependence b) { return Dependence(a.any || b.any); }
+    friend Dependence operator*(Dependence a, Dependence b) { return a + b; }
+    friend Dependence operator/(Dependence a, Dependence b) { return a + b; }
     friend Dependence operator-(Dependence a) { return a; }
     friend Dependence pow(Dependence a, Dependence b) { return a + b; }
     friend void sine_and_cosine(Dependence a, Dependence& sine, Dependence& cosine) { sine = cosine = a; }

@@ -98,8 +98,9 @@ class SeriesEvaluator {
         : SeriesEvaluator(program) {
         fix(parameters);
     }
-    // Call fix() before use.
-    SeriesEvaluator(const SeriesProgram& program, const LaneCode& code) requires is_lanes<Number>
+    // Call fix() before use. (It is a template because clang 14 compiles it for all number types otherwise.)
+    template <class Same = Number>
+    SeriesEvaluator(const SeriesProgram& program, const LaneCode& code) requires is_lanes<Same>
         : SeriesEvaluator(&program, InnerSums<Number>(code.plan), code.orders, code.start) {}
 
     // Evaluates what depends on parameters only.
