@@ -9,8 +9,8 @@
 
 #include "figure/label.hpp"
 #include "number/angle.hpp"
+#include "panels/panels.hpp"
 #include "panels/slider.hpp"
-#include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
 #include "session/replay_script.hpp"
 #include "surface/imgui_version.hpp"

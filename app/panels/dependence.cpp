@@ -1,6 +1,6 @@
 // The sensitivity panel, in place of the events. A bar for every slider shows how much the quantity would change over
 // the slider's whole range according to its derivative.
-#include "panels/sweep.hpp"
+#include "panels/panels.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "figure/label.hpp"
+#include "panels/slider.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

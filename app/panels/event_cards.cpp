@@ -14,9 +14,8 @@
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
-#include "session/certificate_text.hpp"
-#include "session/contact_forces_text.hpp"
 #include "session/event_text.hpp"
+#include "session/results_text.hpp"
 #include "simulate/explain.hpp"
 #include "surface/imgui_version.hpp"
 #include "system/units.hpp"
@@ -353,7 +352,7 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     if (!text.sentence.empty()) paragraph(text.sentence, width, text_color());
     paragraph(text.not_covered, width, faint_color());
     if (!is_plastic_landing(event)) lens_button(session, state, commands);
-    const bool can_prove = not_proved(*session.model()).empty() && session.shown_proof() == nullptr;
+    const bool can_prove = !first_unproved(session.model()->description()) && session.shown_proof() == nullptr;
     if (can_prove && session.proof_under_way() == nullptr) {
         if (!is_plastic_landing(event)) ImGui::SameLine(0.0F, units(24.0F));
         if (link_button("Prove this run", "prove run", "prove bounds on the exact motion of the whole run", state))

@@ -4,7 +4,7 @@
 
 #include "expression/parse.hpp"
 #include "figure/label.hpp"
-#include "panels/sweep.hpp"
+#include "panels/panels.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 

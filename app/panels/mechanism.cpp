@@ -16,7 +16,7 @@
 #include "paint/paint.hpp"
 #include "panels/mechanism_line.hpp"
 #include "panels/widgets.hpp"
-#include "session/contact_forces_text.hpp"
+#include "session/event_text.hpp"
 #include "session/mechanism_view.hpp"
 
 namespace achilles {

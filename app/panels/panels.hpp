@@ -17,6 +17,7 @@
 #include "panels/browser.hpp"
 #include "panels/focus.hpp"
 #include "session/results_text.hpp"
+#include "session/sweep_text.hpp"
 
 namespace achilles {
 
@@ -429,5 +430,18 @@ void ask_to_save(const Session& session, PanelState& state);
 // `ending`: "svg", in the form of ending_of().
 void ask_to_export(const Session& session, PanelState& state, const std::string& ending, int plot = 0);
 void save_or_ask(const Session& session, PanelState& state, Commands& commands);
+
+// ---- shared by the sweep panel, the sensitivity panel, their menus and the sliders ----
+
+// Drag-and-drop payload type of a slider's name that is dropped onto an axis.
+inline constexpr const char* dragged_name = "name";
+// A row of menus, up to `right`: the quantities along x and y, and the printed quantity.
+void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& state, Commands& commands);
+
+// "15.88 s per m": a derivative, with angles in degrees. "none" if it does not exist.
+std::string derivative_text(const SystemDescription& system, const Sensitivities& known,
+                            const Sensitivities::Sensitivity& by);
+// The sweep over that slider with this quantity.
+command::ShowSweep sweep_over(const Session& session, const std::string& name, const std::string& quantity);
 
 }  // namespace achilles

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "expression/parse.hpp"
-#include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

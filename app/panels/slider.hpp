@@ -38,5 +38,7 @@ double typed_number(const std::string& text, const std::string& unit, double fac
 void mark_changed();
 // Shows a row. Returns true if the user changed the value; `value` is then the new one.
 bool moved(Slider& slider, PanelState& state);
+// Puts the effect of a parameter or initial value on the selected quantity below its slider (dependence.cpp).
+void put_bar(const Session& session, Slider& slider);
 
 }  // namespace achilles

@@ -147,11 +147,11 @@ void begin_study(const char* name) {
 
 void show_proof(const Session& session, PanelState& state, Commands& commands) {
     begin_study("proof");
-    const std::string_view what = not_proved(*session.model());
+    const std::optional<UnprovedFeature> unproved = first_unproved(session.model()->description());
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
     // A run that is proved by itself has no tubes yet.
     const char* const request = session.shown_proof() != nullptr ? "Show tubes" : "Prove this run";
-    ImGui::BeginDisabled(!what.empty());
+    ImGui::BeginDisabled(unproved.has_value());
     if (ImGui::Button(is_under_way ? "Stop proving" : is_there ? "Forget proof" : request))
         commands.push_back(is_under_way || is_there ? Command(command::StopProof{}) : Command(command::Prove{}));
     remember(state, "prove");
@@ -164,9 +164,10 @@ void show_proof(const Session& session, PanelState& state, Commands& commands) {
     ImGui::EndDisabled();
     ImGui::SetCursorScreenPos({remaining().x, row.y + row.height + ImGui::GetStyle().ItemSpacing.y});
     const float width = std::min(remaining().width, units(640.0F));
-    if (!what.empty())
-        paragraph(fmt::format("Runs with {} cannot be proved; the status line has the estimated error.", what), width,
-                  text_color());
+    if (unproved)
+        paragraph(
+            fmt::format("Runs with {} cannot be proved; the status line has the estimated error.", unproved->what),
+            width, text_color());
     else if (const Proof* const proof = session.shown_proof())
         paragraph(proof_sentence(session, *proof), remaining().width, text_color());
     else

@@ -1,6 +1,6 @@
 // The study of many runs. A cross hair marks the current run; a click or drag makes the run under the mouse
 // the current one.
-#include "panels/sweep.hpp"
+#include "panels/panels.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -16,6 +16,7 @@
 #include "figure/sweep_figure.hpp"
 #include "output/contacts.hpp"
 #include "paint/paint.hpp"
+#include "panels/slider.hpp"
 #include "panels/widgets.hpp"
 #include "session/sweep_text.hpp"
 #include "system/units.hpp"

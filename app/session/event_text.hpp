@@ -1,6 +1,7 @@
-// The cards of events in words.
+// The cards of events in words, and the forces of the contacts that are held now.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "figure/label.hpp"
@@ -18,5 +19,17 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, 
                         const ShownUnit& acceleration);
 // What is held before an impact of a system with several contacts, and what the impact opens.
 std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason);
+
+// ---- forces of contacts, and of joints with friction ----
+
+// The friction force of a contact or joint in a mode, and its largest value: mu lambda, or the level. Static while it
+// sticks.
+struct FrictionShare {
+    double force = 0.0, limit = 0.0;
+};
+FrictionShare friction_share(const Trajectory& run, std::size_t which, Mode mode, const State& state);
+
+// A line for each force, such as "normal force of floor: 9.81 N"; empty in flight. `only`: of this contact or joint.
+std::string contact_forces_text(const Session& session, const std::optional<std::size_t>& only = {});
 
 }  // namespace achilles

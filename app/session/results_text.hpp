@@ -1,4 +1,4 @@
-// The results of a run: its Zeno points, releases and opening impacts, in words.
+// The results of a run in words: its Zeno points, releases and opening impacts, and the certificates of Zeno points.
 #pragma once
 
 #include <string>
@@ -43,5 +43,32 @@ int decimals_of_times(const Trajectory& trajectory);
 std::string precision_text();
 // `before` followed by "proved: t = 2.7251421727 ± 1.3e−10 s"; empty if no proof encloses the event.
 std::string proved_text(const Session& session, std::size_t event, const std::string& before = "");
+
+// ---- certificates ----
+
+// The certificate of a Zeno point in words and numbers for a reader: what happened, each error with its bound and what
+// is allowed, and what is not covered.
+struct CertificateText {
+    std::string title;     // "Zeno 1", "Landing of wall"
+    std::string verdict;   // "CERTIFIED", "PROVED"; empty: the contact is made without a bounce
+    std::string sentence;  // "It would bounce infinitely often; ..."
+    struct Row {
+        std::string error, bound, allowed;  // "time from the cut on", "6.9e-07 s", "1e-06 s"
+        double share = 0.0;                 // bound/allowed
+        bool is_nearest = false;            // the one nearest to its limit
+    };
+    std::vector<Row> rows;  // empty: nothing had to be decided
+    std::string not_covered;
+};
+// Of an event with a certificate.
+CertificateText certificate_text(const Session& session, std::size_t event);
+
+// The bounds of the certificate line by line, for the details. The Zeno time is not among them: event_time() has it.
+std::vector<std::string> certificate_lines(const Event& event);
+
+// "9th", "21st".
+std::string ordinal(int number);
+// "1.6 ms": a duration in the unit that suits it, with two digits.
+std::string duration_text(double seconds);
 
 }  // namespace achilles

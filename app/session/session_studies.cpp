@@ -200,7 +200,7 @@ void Session::follow_proof_behind(Timeout patience) {
     constexpr int most_steps = 150;  // about 0.1 s for two coordinates
     if (!proves_behind_) return;
     const bool is_wanted = watch_ == nullptr && simulated_->estimate && !shows_start() && !proof_request_ &&
-                           proof() == nullptr && not_proved(*system_->model).empty();
+                           proof() == nullptr && !first_unproved(system_->model->description());
     if (!is_wanted) return stop_proof_behind();
     try {
         if (run_proved_behind_ != simulated_) {

@@ -1,4 +1,4 @@
-// The picture of a sweep in words, and the current run in it.
+// The picture of a sweep in words, the current run in it, and what the sweep panel offers.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "analysis/sweep.hpp"
 #include "analysis/table.hpp"
 #include "figure/label.hpp"
+#include "session/command.hpp"
 #include "session/session.hpp"
+#include "session/study_jobs.hpp"
 
 namespace achilles {
 
@@ -25,5 +28,15 @@ std::optional<std::size_t> sweep_row_at(const SweepData& data, const std::vector
 std::string sweep_quantity_text(double value, const ShownUnit& unit);
 // What was printed of a point, one quantity a line.
 std::string sweep_row_text(const SweepData& data, std::size_t row);
+
+// ---- what the sweep panel offers ----
+
+// Quantities offered in the menu, and the derivative of the first with respect to the x axis.
+std::vector<std::string> offered_prints(const SystemDescription& description, const SweepSpec& sweep);
+// The command that shows this sweep around the current run.
+command::ShowSweep showing(const SweepSpec& sweep, const SystemDescription& description);
+// The axis of a sweep over the range of the slider with this name: a parameter, an initial value or an option.
+// nullopt if no slider has this name.
+std::optional<SweepAxis> axis_for(const Session& session, const std::string& name);
 
 }  // namespace achilles

@@ -30,15 +30,22 @@ bool is_settable(const SystemDescription& description, std::string_view name) {
 std::string unit_of_print(const SystemDescription& description, const std::string& print) {
     const std::string word = print.substr(0, print.find('('));
     if (word.size() < print.size() && print.find(')') + 1 != print.size()) return "";
-    const bool several = description.constraints.size() > 1;
     if (is_settable(description, print)) return unit_of(description, print);
-    if (word == "zeno_time" || word == "impact_time" || word == "release_time") return "s";
-    if (word == "collapse_time" && several) return "s";
-    const bool is_of_friction = word == "stick_time" || word == "slip_time" || word == "reversal_time";
-    if (is_of_friction && !sliding_places(description).empty()) return "s";
-    if (word == "impact_speed") return several ? "" : unit_of_expression(description, "gap'");
-    if (word == "least_gap") return several ? "" : unit_of_expression(description, "gap");
-    return unit_of_expression(description, print);
+    const NamedRunQuantity* const one = run_quantity(word);
+    if (one == nullptr || !why_absent(one->quantity, description).empty())
+        return unit_of_expression(description, print);
+    const bool several = description.constraints.size() > 1;
+    switch (one->quantity.kind) {
+        case RunQuantity::Kind::time:
+            return "s";
+        case RunQuantity::Kind::speed:
+            return several ? "" : unit_of_expression(description, "gap'");
+        case RunQuantity::Kind::least_gap:
+            return several ? "" : unit_of_expression(description, "gap");
+        case RunQuantity::Kind::count:
+            return "";
+    }
+    return "";
 }
 
 // ---- derivatives ----
@@ -91,8 +98,7 @@ void check_quantity(const SystemDescription& description, const std::string& pri
         if (name == "held" || name == "outcome" || name == "modes")
             throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
                                 "print the quantity without d(...)");
-        if (name == "impacts" || name == "zeno_points" || name == "releases" || name == "sticks" || name == "slips" ||
-            name == "reversals" || name == "collapses" || name == "jumps" || name == "passes")
+        if (is_count_of_events(name))
             throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
                                 "print the quantity without d(...)");
         if (name == "least_gap" || name == "work" || name == "loss" || name == "heat")

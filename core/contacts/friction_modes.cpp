@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contacts/impact_law.hpp"
 #include "number/dense.hpp"
 
 namespace achilles {
@@ -221,9 +222,9 @@ FrictionImpact impact_at(const FrictionImpactProblem& problem, double part_of_e)
     for (std::size_t i = 0; i < count; ++i) {
         FrictionProblem::Element& each = forces.elements[i];
         const double e = part_of_e * problem.e[i];
-        forces.accelerations[each.gap] *= 1.0 + e;
+        forces.accelerations[each.gap] = newton::removed_rate(e, forces.accelerations[each.gap]);
         if (each.slip < 0) continue;
-        each.resting = problem.coefficient(i, e * std::abs(problem.before[each.slip]) / (1.0 + e));
+        each.resting = problem.coefficient(i, newton::slip_speed(0.0, e, problem.before[each.slip]));
     }
     group_equal_slips(forces);
     std::vector<FrictionMotion> found;
@@ -242,7 +243,7 @@ FrictionImpact impact_at(const FrictionImpactProblem& problem, double part_of_e)
                 FrictionProblem::Element& each = one.elements[i];
                 if (slip_sign(mode.state(each.which)) == 0 || std::isnan(motion.margin)) continue;
                 const double e = part_of_e * problem.e[i], u = problem.before[each.slip];
-                const double speed = std::abs(motion.accelerations[each.slip] + e * u) / (1.0 + e);
+                const double speed = newton::slip_speed(motion.accelerations[each.slip], e, u);
                 const double mu = problem.coefficient(i, speed);
                 change = std::max(change, std::abs(mu - each.sliding) / std::max(mu, 1e-300));
                 each.sliding = mu;

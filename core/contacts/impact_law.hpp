@@ -7,6 +7,7 @@
 // (contacts/moreau.hpp).
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 namespace achilles::newton {
@@ -20,6 +21,10 @@ template <class Number>
 Number rate_after(const Number& e, const Number& hdot) {
     return -(e * hdot);
 }
+
+// The speed of the slip at the end of the compression, |u+ + e u-|/(1 + e), by the slips before and after the impact.
+// The coefficient of friction is taken there (theory-friction.md 3).
+inline double slip_speed(double after, double e, double before) { return std::abs(after + e * before) / (1.0 + e); }
 
 // The impulse p >= 0. W belongs to the mode of the contacts that stay held.
 template <class Number>

@@ -181,21 +181,9 @@ Interval restitution_over(const Model& model, const EnclosureProblem& claim, std
 void check(const Model& model, const EnclosureProblem& claim) {
     const FloatEnvironmentGuard ground;
     const SystemDescription& description = model.description();
-    if (description.has_friction())
-        throw description.error(sliding_places(description).front().level->at, "a proof does not cover friction",
+    if (const auto feature = first_unproved(description))
+        throw description.error(feature->at, fmt::format("a proof does not cover {}", feature->what),
                                 "achilles simulate runs this system, with an estimate of its error");
-    const char* const hint = "achilles simulate runs this system, with an estimate of its error";
-    if (!description.jumps.empty())
-        throw description.error(description.jumps.front().at, "a proof does not cover jumps", hint);
-    for (const ConstraintDescription& constraint : description.constraints)
-        if (!constraint.when.text.empty())
-            throw description.error(constraint.when.at, "a proof does not cover contacts that count only sometimes",
-                                    hint);
-    for (const ConstraintDescription& constraint : description.constraints)
-        if (!constraint.latch.on.text.empty())
-            throw description.error(constraint.latch.on.at, "a proof does not cover latches", hint);
-    if (const Text* text = first_with_held(description))
-        throw description.error(text->at, "a proof does not cover forces with held(NAME)", hint);
     std::vector<InputError> errors;
     for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
         const ConstraintDescription& constraint = description.constraints[contact];

@@ -203,6 +203,19 @@ const Text* first_with_held(const SystemDescription& system) {
     return has_it(system.dissipation) ? &system.dissipation : nullptr;
 }
 
+std::optional<UnprovedFeature> first_unproved(const SystemDescription& system) {
+    if (system.has_friction()) return UnprovedFeature{"dry friction", sliding_places(system).front().level->at};
+    if (!system.jumps.empty()) return UnprovedFeature{"jumps", system.jumps.front().at};
+    for (const ConstraintDescription& constraint : system.constraints)
+        if (!constraint.when.text.empty())
+            return UnprovedFeature{"contacts that count only sometimes", constraint.when.at};
+    for (const ConstraintDescription& constraint : system.constraints)
+        if (!constraint.latch.on.text.empty()) return UnprovedFeature{"latches", constraint.latch.on.at};
+    if (const Text* const text = first_with_held(system))
+        return UnprovedFeature{"forces that depend on contact", text->at};
+    return std::nullopt;
+}
+
 Layout layout_of(const SystemDescription& system) {
     const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
     return {count(system.coordinates), count(system.parameters), count(system.constraints),
@@ -314,6 +327,64 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
     return scope;
 }
 
+std::span<const NamedRunQuantity> run_quantities() {
+    using enum RunQuantity::Kind;
+    using enum Event::Kind;
+    static constexpr NamedRunQuantity all[] = {{"zeno_time", {time, zeno}},
+                                               {"impact_time", {time, impact}},
+                                               {"impact_speed", {speed, impact}},
+                                               {"release_time", {time, release}},
+                                               {"zeno_points", {count, zeno}},
+                                               {"impacts", {count, impact}},
+                                               {"releases", {count, release}},
+                                               {"least_gap", {least_gap, {}}},
+                                               {"stick_time", {time, stick}},
+                                               {"slip_time", {time, slip}},
+                                               {"reversal_time", {time, reversal}},
+                                               {"sticks", {count, stick}},
+                                               {"slips", {count, slip}},
+                                               {"reversals", {count, reversal}},
+                                               {"collapse_time", {time, collapse}},
+                                               {"collapses", {count, collapse}},
+                                               {"jump_time", {time, jump}},
+                                               {"jumps", {count, jump}},
+                                               {"pass_time", {time, pass}},
+                                               {"passes", {count, pass}}};
+    return all;
+}
+
+const NamedRunQuantity* run_quantity(std::string_view name) {
+    const auto all = run_quantities();
+    const auto found = std::ranges::find(all, name, &NamedRunQuantity::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+bool is_count_of_events(std::string_view name) {
+    const NamedRunQuantity* const one = run_quantity(name);
+    return one != nullptr && one->quantity.kind == RunQuantity::Kind::count;
+}
+
+std::string why_absent(const RunQuantity& quantity, const SystemDescription& system) {
+    if (!quantity.event) return "";
+    switch (*quantity.event) {
+        case Event::Kind::stick:
+        case Event::Kind::slip:
+        case Event::Kind::reversal:
+            return system.has_friction() ? "" : "needs friction, and this system has none";
+        case Event::Kind::collapse:
+            return system.constraints.size() > 1 && !system.has_friction() ? "" : "is of two contacts without friction";
+        case Event::Kind::jump:
+            return system.jumps.empty() ? "needs jumps, and this system has none" : "";
+        case Event::Kind::pass:
+            return system.has_conditional_contacts() ? "" : "needs a contact with 'when', and this system has none";
+        case Event::Kind::impact:
+        case Event::Kind::zeno:
+        case Event::Kind::release:
+            return "";
+    }
+    return "";
+}
+
 Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
                     std::vector<RunQuantity>& quantities) {
     Scope scope = view_scope(system, layout, graph, equations);
@@ -323,38 +394,12 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
         if (known == quantities.end()) quantities.push_back(quantity);
         return graph.symbol(layout.count() + place);
     };
-    using enum RunQuantity::Kind;
-    using enum Event::Kind;
-    std::vector<std::pair<const char*, RunQuantity>> named{
-        {"zeno_time", {time, zeno}},       {"impact_time", {time, impact}}, {"impact_speed", {speed, impact}},
-        {"release_time", {time, release}}, {"zeno_points", {count, zeno}},  {"impacts", {count, impact}},
-        {"releases", {count, release}},    {"least_gap", {least_gap, {}}}};
-    const std::pair<const char*, RunQuantity> of_friction[] = {
-        {"stick_time", {time, stick}}, {"slip_time", {time, Event::Kind::slip}}, {"reversal_time", {time, reversal}},
-        {"sticks", {count, stick}},    {"slips", {count, Event::Kind::slip}},    {"reversals", {count, reversal}}};
-    if (layout.frictions > 0) {
-        named.insert(named.end(), std::begin(of_friction), std::end(of_friction));
-    } else {
-        for (const auto& [name, quantity] : of_friction)
-            scope.forbidden.emplace(name, fmt::format("'{}' needs friction, and this system has none", name));
-    }
-    const std::pair<const char*, RunQuantity> of_collapses[] = {{"collapse_time", {time, collapse}},
-                                                                {"collapses", {count, collapse}}};
-    if (system.constraints.size() > 1 && layout.frictions == 0) {
-        named.insert(named.end(), std::begin(of_collapses), std::end(of_collapses));
-    } else {
-        for (const auto& [name, quantity] : of_collapses)
-            scope.forbidden.emplace(name, fmt::format("'{}' is of two contacts without friction", name));
-    }
-    if (!system.jumps.empty()) {
-        named.push_back({"jump_time", {time, jump}});
-        named.push_back({"jumps", {count, jump}});
-    }
-    if (system.has_conditional_contacts()) {
-        named.push_back({"pass_time", {time, pass}});
-        named.push_back({"passes", {count, pass}});
-    }
-    for (const auto& [name, quantity] : named) {
+    for (const auto& [name, quantity] : run_quantities()) {
+        if (const std::string reason = why_absent(quantity, system); !reason.empty()) {
+            scope.forbidden.emplace(name, fmt::format("'{}' {}", name, reason));
+            continue;
+        }
+        using enum RunQuantity::Kind;
         scope.allowed.emplace(name, input(quantity));  // a name defined by the system takes precedence
         if (quantity.kind != time && quantity.kind != speed) continue;
         scope.listed.emplace(name, [input, one = quantity](int k) { return input({one.kind, one.event, k}); });

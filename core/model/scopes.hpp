@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "expression/parse.hpp"
@@ -16,6 +18,14 @@ namespace achilles {
 // The first force, or else the dissipation, in which held(NAME) stands; null if there is none, or if a
 // parameter or coordinate has this name.
 const Text* first_with_held(const SystemDescription& system);
+
+// Something that proofs do not cover, in words, and where the file of the system has it.
+struct UnprovedFeature {
+    std::string_view what;
+    Location at;
+};
+// nullopt if proofs cover all of the system.
+std::optional<UnprovedFeature> first_unproved(const SystemDescription& system);
 
 // The slots of the inputs of a system's programs.
 Layout layout_of(const SystemDescription& system);
@@ -41,6 +51,7 @@ Scope closing_scope(const SystemDescription& system, const Layout& layout, Graph
 Scope definition_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Coordinates, t, parameters; the caller adds the curve's own parameter.
 Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
+
 // A quantity of a whole run that may appear in an expression, in addition to those of a view: the time or speed of the
 // k-th or last event, the number of events, or the smallest gap.
 struct RunQuantity {
@@ -50,6 +61,19 @@ struct RunQuantity {
     int k = 0;                         // index of the event, from 1; 0: the last one
     friend bool operator==(const RunQuantity&, const RunQuantity&) = default;
 };
+
+// The name of each such quantity.
+struct NamedRunQuantity {
+    std::string_view name;
+    RunQuantity quantity;
+};
+std::span<const NamedRunQuantity> run_quantities();
+// Null if no quantity of a run has this name.
+const NamedRunQuantity* run_quantity(std::string_view name);
+// Why a system cannot have this quantity, such as "needs friction, and this system has none"; empty if it can.
+std::string why_absent(const RunQuantity& quantity, const SystemDescription& system);
+// Whether the name is that of a number of events.
+bool is_count_of_events(std::string_view name);
 
 // t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy, with friction slip, friction_force and heat;
 // their values are taken from the equations.

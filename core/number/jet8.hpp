@@ -27,7 +27,7 @@ struct Jet8 {
 
     // f(x) by the chain rule: f is f(x) and by_x is f'(x).
     friend Jet8 chain(const Jet8& x, double f, double by_x) { return {f, by_x * x.slope}; }
-    // x with a b' added to its derivatives.
+    // The value of x, with the derivatives of x plus a times those of b.
     friend Jet8 and_slope(const Jet8& x, double a, const Jet8& b) { return {x.value, x.slope + a * b.slope}; }
     friend Jet8 operator-(const Jet8& a) { return {-a.value, -a.slope}; }
     friend Jet8 operator+(const Jet8& a, const Jet8& b) { return {a.value + b.value, a.slope + b.slope}; }

@@ -16,14 +16,6 @@
 
 namespace achilles {
 
-std::string_view not_proved(const Model& model) {
-    if (model.has_friction()) return "dry friction";
-    if (model.has_jumps()) return "jumps";
-    if (model.has_latches()) return "latches";
-    if (model.has_conditional_contacts()) return "contacts that count only sometimes";
-    return model.do_forces_see_contact() ? "forces that depend on contact" : "";
-}
-
 namespace {
 
 constexpr std::size_t max_state_columns = 4;  // columns of the table
@@ -184,7 +176,7 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
 std::string end_line(const Trajectory& trajectory, const ErrorEstimate& estimate, const std::string& prove_command) {
     const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
                                            : "no error estimate, because " + estimate.no_estimate_reason;
-    if (!not_proved(*trajectory.model).empty()) return fmt::format("State at the end: {}.\n", state);
+    if (first_unproved(trajectory.model->description())) return fmt::format("State at the end: {}.\n", state);
     return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
 }
 

@@ -35,9 +35,6 @@ struct OrbitGuess;
 struct OrbitPoint;
 struct SystemDescription;
 
-// What the system has that proofs do not cover, in words; empty if they cover it.
-std::string_view not_proved(const Model& model);
-
 // With instants, the array `samples` has the states there. With `dependence`, the events, the end and `derivatives`
 // have derivatives. `estimate` is the error estimate of this run; if null, it is computed here.
 std::string to_json(const Trajectory& trajectory, const Instants& instants = {}, const Dependence* dependence = nullptr,

@@ -145,9 +145,10 @@ std::string_view to_text(Outcome::Kind kind) {
             return "too many events";
         case Outcome::Kind::cancelled:
             return "cancelled";
-        default:
+        case Outcome::Kind::undecided:
             return "undecided";
     }
+    return "undecided";
 }
 
 }  // namespace achilles

@@ -144,6 +144,8 @@ class Chain {
 
     ChainLink& add(ChainLink::Kind kind, std::optional<std::size_t> event = {});
     ChainLink& cross(std::size_t event, Eigen::RowVectorXd G, double residual);
+    ChainLink& cross_surface(std::size_t event);
+    void set_rate_rows(RowMatrix& J, std::size_t but);
     void meet_surface(std::size_t contact, Mode others, ChainLink& crossing);
     double residual_before(std::size_t contact);
     void retract(RowMatrix& J, Mode onto);

@@ -77,6 +77,28 @@ ContactSet Chain::latched_before(std::size_t event) const {
     return event == 0 ? trajectory_->start_latched : trajectory_->events[event - 1].latched;
 }
 
+// The crossing of the surface of the contact that impacts, which is closed from here on.
+ChainLink& Chain::cross_surface(std::size_t event) {
+    const Event& now = trajectory_->events[event];
+    const std::size_t i = now.contacts.only();
+    set_gaps();
+    h_[i] = 0.0;
+    u_[i] = -now.impact_speed;
+    RowVectorXd to_surface = RowVectorXd::Zero(tangent_.size());
+    to_surface[tangent_.h(i)] = 1.0;
+    return cross(event, to_surface, 0.0);
+}
+
+// Sets the rows of the gap rates of the open contacts, but for one, by the rows of the state.
+void Chain::set_rate_rows(RowMatrix& J, std::size_t but) {
+    for (std::size_t k = 0; k < tangent_.contacts; ++k) {
+        if (mode_.is_held(k) || k == but) continue;
+        ContactGradient& other = surface(k, {});
+        other.at(state_);
+        J.row(tangent_.u(k)) = other.hdot_row().lazyProduct(J).eval();
+    }
+}
+
 void Chain::land(std::size_t event) {
     const Event& now = trajectory_->events[event];
     if (waiting_) return break_off("an impact happens before the Zeno time of another contact");
@@ -108,12 +130,7 @@ void Chain::land(std::size_t event) {
         }
         others = mode_.only(loaded);
     }
-    set_gaps();
-    h_[i] = 0.0;
-    u_[i] = -now.impact_speed;
-    RowVectorXd to_surface = RowVectorXd::Zero(tangent_.size());
-    to_surface[tangent_.h(i)] = 1.0;
-    ChainLink& crossing = cross(event, to_surface, 0.0);
+    ChainLink& crossing = cross_surface(event);
     if (options_.errors) meet_surface(i, others, crossing);
 
     ContactSet joins;
@@ -156,12 +173,7 @@ void Chain::land(std::size_t event) {
     mode_ = completes ? mode_after_cut(others.with(i, ContactState::held)) : now.mode;
     if (completes && others != now.mode.without(i))
         return break_off("the impact sequence is cut at an impact that opens a contact");
-    for (std::size_t k = 0; k < tangent_.contacts; ++k) {
-        if (mode_.is_held(k) || k == i) continue;
-        ContactGradient& other = surface(k, {});
-        other.at(state_);
-        J.row(tangent_.u(k)) = other.hdot_row().lazyProduct(J).eval();
-    }
+    set_rate_rows(J, i);
     set_gaps();
     if (!rests) {
         h_[i] = 0.0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contacts/impact_law.hpp"
+
 namespace achilles {
 
 // ---- programs ----
@@ -170,7 +172,8 @@ State CompletionError::shift_of_sticking(const TruncationState& cut) {
     const double left_out =
         (flight.slip_integral + slip_after(flight.next) - slip_after(cut)) / (1.0 - ratio * ratio * ratio);
     const auto& terms = sticking_terms(cut.key, cut.tangential);
-    const double e = surfaces_.restitution(cut.key.contact).value, u = e * cut.speed, e3 = 1.0 - e * e * e;
+    const double e = surfaces_.restitution(cut.key.contact).value, u = newton::rate_after(e, -cut.speed),
+                 e3 = 1.0 - e * e * e;
     const double a = -terms.hddot(0), alpha = terms.hddot(1), T = 2.0 * u / a;
     const double I = 2.0 * u * u * u / (3.0 * a * a * e3),
                  J = alpha * T * T * T * ((1.0 / (1.0 - e * e) - 1.0 / e3) / (2.0 * (1.0 - e)) + 1.0 / (3.0 * e3));

@@ -206,7 +206,7 @@ bool Chain::add_slip(const Event& now, std::size_t contact, ImpactRows& impact) 
     ImpactRows::Row row = impact.rows.back();
     const double normal = row.impulse, e = row.e, before = surfaces_.slip(contact, state_).u;
     const double after = surfaces_.slip(contact, {now.q, now.v_after, now.t}).u;
-    const double speed = std::abs(after + e * before) / (1.0 + e);
+    const double speed = newton::slip_speed(after, e, before);
     SlipGradient& slip = this->slip(contact);
     slip.at(state_, speed);
     row.is_slip = true;
@@ -254,12 +254,7 @@ void Chain::land_with_friction(std::size_t event) {
     if (auto reason = next_completion(event, joins)) return break_off(std::move(*reason));
     const std::size_t i = now.contacts.only();
     const bool completes = joins.contains(i), rests = completes && surfaces_.restitution(i).value == 0.0;
-    set_gaps();
-    h_[i] = 0.0;
-    u_[i] = -now.impact_speed;
-    RowVectorXd to_surface = RowVectorXd::Zero(tangent_.size());
-    to_surface[tangent_.h(i)] = 1.0;
-    ChainLink& crossing = cross(event, to_surface, 0.0);
+    ChainLink& crossing = cross_surface(event);
     ImpactRows impact{i, {}, {}};
     if (!add_loaded_contacts(now, latched_before(event), impact)) return;
     if (options_.errors) meet_surface(i, {}, crossing);
@@ -275,12 +270,7 @@ void Chain::land_with_friction(std::size_t event) {
     else
         bounce_with_friction(now, impact, J);
     settle(J, mode_);
-    for (std::size_t k = 0; k < tangent_.contacts; ++k) {
-        if (mode_.is_held(k) || k == i) continue;
-        ContactGradient& other = surface(k, {});
-        other.at(state_);
-        J.row(tangent_.u(k)) = other.hdot_row() * J;
-    }
+    set_rate_rows(J, i);
     set_gaps();
     if (mode_.is_held(i)) return;
     h_[i] = 0.0;

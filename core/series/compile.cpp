@@ -459,7 +459,7 @@ VariedNumbers SeriesProgram::dependent_on(const std::vector<bool>& inputs) const
     fix(z.data(), coefficients.data(), factors.data());
     start(z.data(), coefficients.data(), factors.data());
     for (std::uint32_t i = 0; i < program_.slots_.parameters_begin; ++i) now[1 + i] = z[i];
-    // Inner sums are of series whose rules come later, too.
+    // An inner sum may need a series whose rule comes later.
     for (bool changed = true; changed;) {
         changed = false;
         const auto set = [&](std::size_t number, Dependence value) {

@@ -155,6 +155,8 @@ class ExecutionAutomaton {
     bool stays_held(std::size_t which, const Contact& contact);
     bool is_pressed(const ClosedContacts& closed, ContactSet held, const State& state);
     double plastic_work(const State& before, ContactSet contacts);
+    void note_order(MultiContactInfo& joint, const ClosedContacts& closed, const ContactVector<double>& before,
+                    const ContactVector<double>& e, const ContactVector<double>& after) const;
     void collide(ContactSet landing);
     bool complete_pair(ContactSet landing, const Vector& v_after, bool cut_at_resolution);
     bool complete_pair(std::size_t first, std::size_t second, Mode others, ContactSet landing, const Vector& v_after,

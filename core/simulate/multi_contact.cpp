@@ -143,6 +143,36 @@ double ExecutionAutomaton::plastic_work(const State& before, ContactSet contacts
     return work;
 }
 
+// Notes whether the outcome of a simultaneous impact depends on the order of the impacts and, if it does, the gap rates
+// after each order. `before` and `after` are the gap rates of the closed contacts, `e` their restitutions.
+void ExecutionAutomaton::note_order(MultiContactInfo& joint, const ClosedContacts& closed,
+                                    const ContactVector<double>& before, const ContactVector<double>& e,
+                                    const ContactVector<double>& after) const {
+    // An unpressed contact with e > 0 would be opened by an impact just before, so for the order it counts as
+    // impacting.
+    ContactSet loose, all;
+    for (const std::size_t i : closed.which) {
+        all = all.with(i);
+        if (next_.unpressed.contains(i) && restitution(i) > 0.0) loose = loose.with(i);
+    }
+    const ContactSet open = closed.places_of(all.without(next_.resting().held().without(loose)));
+    const ContactSet fast = closed.places_of(next_.held().without(next_.latched).without(loose));
+    if (open.count() <= 1) return;
+    const auto order = order_dependence(enclosure(closed.W, rounding_radius(closed.W)), e, fast, open);
+    joint.order_matters = order.matters();
+    joint.rounded_zero = order.rounded_zero;
+    if (!joint.order_matters) return;
+    const auto rates = [&](const ContactVector<double>& hdot) {
+        std::vector<std::pair<std::size_t, double>> list;
+        for (std::size_t i = 0; i < closed.which.size(); ++i)
+            list.emplace_back(closed.which[i], hdot[static_cast<Eigen::Index>(i)]);
+        return list;
+    };
+    joint.alternatives.push_back({std::nullopt, rates(after)});
+    for (const ImpactSequence& other : alternatives(closed.W, before, e, fast))
+        joint.alternatives.push_back({closed.which[static_cast<std::size_t>(other.first)], rates(other.hdot_after)});
+}
+
 // Simultaneous impact of several contacts, by Newton's law in Moreau's form.
 void ExecutionAutomaton::collide(ContactSet landing) {
     const ContactSet latched = next_.latched, held = next_.held().without(latched), resting = next_.resting().held(),
@@ -181,36 +211,13 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         joint->impulses.emplace_back(closed.which[i], impact->impulses[static_cast<Eigen::Index>(i)]);
     const Exchange by_latches = add_impulses_of_latched(*joint, nullptr, v_after - v_before);
-    // An unpressed contact with e > 0 would be opened by an impact just before, so for the order it counts as
-    // impacting.
-    ContactSet loose;
-    for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (next_.unpressed.contains(i) && restitution(i) > 0.0) loose = loose.with(i);
-    const ContactSet open = closed.places_of(all.without(resting.without(loose)));
-    const ContactSet fast = closed.places_of(held.without(loose));
-    if (open.count() > 1) {
-        const auto order = order_dependence(enclosure(closed.W, rounding_radius(closed.W)), e, fast, open);
-        joint->order_matters = order.matters();
-        joint->rounded_zero = order.rounded_zero;
-    }
+    note_order(*joint, closed, before, e, impact->hdot_after);
     if (joint->order_matters && run_.options.simultaneous == Simultaneous::stop)
         return stop(
             Outcome::Kind::simultaneous_impacts,
             fmt::format(
                 "{} close at the same time, and the outcome depends on which is first (simultaneous = \"stop\"), at {}",
                 names_of(all.without(held)), where(next_.state)));
-    const auto rates = [&](const ContactVector<double>& after) {
-        std::vector<std::pair<std::size_t, double>> list;
-        for (std::size_t i = 0; i < closed.which.size(); ++i)
-            list.emplace_back(closed.which[i], after[static_cast<Eigen::Index>(i)]);
-        return list;
-    };
-    if (joint->order_matters) {
-        joint->alternatives.push_back({std::nullopt, rates(impact->hdot_after)});
-        for (const ImpactSequence& other : alternatives(closed.W, before, e, fast))
-            joint->alternatives.push_back(
-                {closed.which[static_cast<std::size_t>(other.first)], rates(other.hdot_after)});
-    }
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
         if (!(hdot > 0.0) || !jumps.empty() || !too_short_to_resolve(closed.which[i], hdot)) continue;

@@ -1,11 +1,9 @@
-#include "system/contact_geometry.hpp"
+#include "system/mechanism.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-
-#include "system/mechanism_terms.hpp"
 
 namespace achilles {
 

@@ -5,10 +5,7 @@
 #include <algorithm>
 
 #include "expression/parse.hpp"
-#include "system/contact_geometry.hpp"
 #include "system/mechanism.hpp"
-#include "system/mechanism_drawings.hpp"
-#include "system/mechanism_terms.hpp"
 #include "system/units.hpp"
 
 namespace achilles {

@@ -1,5 +1,5 @@
-// Bodies, grounds, springs and forces of a system file, read and placed. mechanism_terms.hpp derives the energies and
-// forces, contact_geometry.hpp the gaps, and expand.cpp puts them into the file in place of the bodies.
+// Bodies, grounds, springs and forces of a system file, read and placed; their energies and forces, the gaps and slips
+// between them, and their drawings. expand.cpp puts these into the file in place of the bodies.
 #pragma once
 
 #include <map>
@@ -226,5 +226,85 @@ bool attempt_part(ErrorCollector& mistakes, const Location& at, const std::strin
         }
     });
 }
+
+// ---- energies and forces (mechanism_terms.cpp) ----
+//
+// With p_i = dp/dq_i and p_t = dp/dt of the center of mass of each body, and w_i and w_t of its angle:
+//     M_ij = sum m p_i.p_j + J w_i w_j,   c_i = sum m p_i.p_t + J w_i w_t,   T0 = sum m/2 p_t^2 + J/2 w_t^2
+//     kinetic = 1/2 v'M v,   potential = sum -m gravity.p - T0 + springs
+//     force_i = dp/dq_i.F + da/dq_i tau - dc_i/dt - sum_k (dc_i/dq_k - dc_k/dq_i) v_k
+
+struct DerivedTerm {
+    ProductSum value;
+    Location at;  // the table that it is made from
+};
+
+struct MechanismTerms {
+    DerivedTerm kinetic;
+    std::vector<DerivedTerm> potential, dissipation;
+    std::vector<std::vector<DerivedTerm>> forces;  // by coordinate
+    bool is_prescribed = false;                    // time moves a mass
+};
+
+// Adds the mistakes that show up here: a coordinate that moves no mass, inertia that depends on time, and springs,
+// dampers and loads that act on no coordinate.
+MechanismTerms derive_terms(const PlacedMechanism& mechanism, const SystemDescription& system,
+                            ErrorCollector& mistakes);
+
+// The distance between two points, and its rate.
+struct PointDistance {
+    ProductSum value, rate;
+    bool is_signed = false;  // the points stay on one line: positive at the start, and kept when they pass each other
+};
+// Throws Mistake if the points are always together.
+PointDistance distance_between(const PlacedMechanism& mechanism, const NamedPoint& from, const NamedPoint& to,
+                               bool may_be_signed, const Location& at);
+
+// ---- gaps and slips of contacts between shapes (contact_geometry.cpp) ----
+//
+// The gap is the distance of what touches from what is touched, except on a curve. The slip is the tangential velocity of
+// the point of what touches that is nearest, minus that of the touched body at the same place. The tangent is the normal
+// (towards what touches) turned right. The slip is scaled like the gap.
+
+struct ShapeContact {
+    ProductSum gap, slip;
+    ProductSum scale;                      // of both: the gap is this times a distance; 0 stands for 1
+    bool has_slip = true;                  // false: a string
+    std::string name;                      // "shank.end on floor"
+    std::string force;                     // what lambda is: "a distance: lambda is the force"
+    std::string behind, hint;              // message and advice for a negative gap at the start; {} is its size
+    const PlacedShape* touches = nullptr;  // null: a point of the world
+    const PlacedShape* touched = nullptr;  // null: a string, or a point of the world
+    NamedPoint point;                      // what touches: a point, or the center of a disc
+    std::optional<NamedPoint> other;       // string: its other end
+    ProductSum longest;                    // string: its length
+};
+
+// The geometry of a [[constraint]] with `between`. Throws Mistake.
+ShapeContact read_contact(PlacedMechanism& mechanism, const Fields& fields);
+
+// ---- drawings of bodies, springs, grounds and contacts, as [[drawing]] tables of the file (mechanism_drawings.cpp) ----
+
+// Tables that the reader makes, with the location of their origin.
+TomlValue made_string(std::string text, const Location& at);
+TomlValue made_number(double number, const Location& at);
+TomlValue made_boolean(bool boolean, const Location& at);
+TomlValue made_list(const Location& at);  // empty
+TomlValue made_point(const std::array<std::string, 2>& point, const Location& at);
+TomlValue made_table(const Location& at);
+TomlValue& set_entry(TomlValue& table, const std::string& key, TomlValue value);  // adds or replaces
+TomlValue* find_entry(TomlValue& table, std::string_view key);
+
+struct MechanismDrawings {
+    std::vector<TomlValue> free;                      // [[drawing]]
+    std::vector<std::vector<TomlValue>> of_contacts;  // [[constraint.drawing]], by contact
+};
+
+// `contacts` has an empty entry for a constraint with a typed gap.
+MechanismDrawings draw_mechanism(const PlacedMechanism& mechanism,
+                                 const std::vector<std::optional<ShapeContact>>& contacts);
+
+// The coordinates in the world of a point of a frame, as text.
+std::array<std::string, 2> world_point(const MechanismSymbols& symbols, const MovingPoint& point);
 
 }  // namespace achilles

@@ -1,11 +1,9 @@
-#include "system/mechanism_drawings.hpp"
+#include "system/mechanism.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "system/mechanism_terms.hpp"
 
 namespace achilles {
 

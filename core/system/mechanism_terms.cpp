@@ -1,4 +1,4 @@
-#include "system/mechanism_terms.hpp"
+#include "system/mechanism.hpp"
 
 #include <fmt/format.h>
 

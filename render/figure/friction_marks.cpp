@@ -1,4 +1,4 @@
-#include "figure/friction_marks.hpp"
+#include "figure/mechanism_scene.hpp"
 
 #include <algorithm>
 #include <cmath>

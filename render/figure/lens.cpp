@@ -71,7 +71,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     const Model& model = *trajectory.model;
     const std::size_t contact = the_contact(zeno);
     Lens lens;
-    lens.e_ = model.evaluator(model.restitution(contact), trajectory.run.parameters).output(0);
+    lens.e_ = model.restitution(trajectory.run.parameters, contact);
     auto flight = model.evaluator(model.motion(mode_while_bouncing(zeno)).program, trajectory.run.parameters);
     set_state(flight, State{zeno.q, zeno.v_after, zeno.t});
     flight.run();

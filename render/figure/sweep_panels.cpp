@@ -48,10 +48,7 @@ ColumnView::ColumnView(const SweepData& data, std::size_t column) : data_(&data)
         data.columns.begin(), before, [](const auto& other) { return other.kind == ColumnKind::number; }));
 }
 
-bool ColumnView::is_count() const {
-    return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases" || name_ == "sticks" ||
-           name_ == "slips" || name_ == "reversals";
-}
+bool ColumnView::is_count() const { return is_count_of_events(name_); }
 
 std::string ColumnView::label() const { return kind_ == Kind::number ? with_unit(name(), unit_.text) : name(); }
 

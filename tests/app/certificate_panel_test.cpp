@@ -3,7 +3,7 @@
 
 #include "app/open.hpp"
 #include "panels/panels.hpp"
-#include "session/certificate_text.hpp"
+#include "session/results_text.hpp"
 
 namespace achilles {
 namespace {

@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "app/hands.hpp"
-#include "panels/sweep.hpp"
+#include "panels/slider.hpp"
 #include "session/replay_script.hpp"
 
 namespace achilles {

@@ -39,7 +39,7 @@ TEST(FrictionCommands, ProofsAreRefused) {
     folder.put("block.toml", rough_block);
     const Answer answer = folder.run("prove ./block.toml");
     EXPECT_EQ(answer.status, 2);
-    EXPECT_NE(answer.err.find("a proof does not cover friction"), std::string::npos) << answer.err;
+    EXPECT_NE(answer.err.find("a proof does not cover dry friction"), std::string::npos) << answer.err;
 }
 
 // Events are numbered as in sweeps, those of one kind from 1 on.

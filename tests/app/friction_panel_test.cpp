@@ -135,7 +135,7 @@ TEST(FrictionPanels, NoProofIsOffered) {
     EXPECT_EQ(ramp.hands.session.error(), "");
     EXPECT_TRUE(ramp.hands.session.pinned().empty());
     ramp.hands.session.apply(parse_command("prove"));
-    EXPECT_NE(ramp.hands.session.error().find("a proof does not cover friction"), std::string::npos);
+    EXPECT_NE(ramp.hands.session.error().find("a proof does not cover dry friction"), std::string::npos);
     EXPECT_EQ(ramp.hands.session.proof_under_way(), nullptr);
 }
 

@@ -13,7 +13,7 @@
 #include "figure/axes.hpp"
 #include "number/angle.hpp"
 #include "panels/widgets.hpp"
-#include "session/certificate_text.hpp"
+#include "session/results_text.hpp"
 
 namespace achilles {
 namespace {

@@ -176,5 +176,30 @@ TEST(Sweep, SaysWhatCannotBe) {
         EXPECT_THROW(read_sweep(text, ball()), InputError) << text;
 }
 
+// Every count and time of events is a quantity of the systems that can have such events, and of no others.
+TEST(RunQuantities, AreOfSystemsThatCanHaveThem) {
+    for (const char* name : {"ball_on_sine", "newtons_cradle", "block_on_incline", "simplest_walker"}) {
+        const auto model = test::load(name);
+        const SystemDescription& system = model->description();
+        for (const NamedRunQuantity& one : run_quantities()) {
+            const std::string print(one.name), absent = why_absent(one.quantity, system);
+            try {
+                const RunMeasures measures(
+                    model, make_sweep({.over = {"end=1:2:2"}, .prints = {print}}, default_run(system), system));
+                EXPECT_EQ(absent, "") << name << " " << print;
+                const bool is_time = one.quantity.kind == RunQuantity::Kind::time;
+                EXPECT_EQ(measures.columns().at(0).unit == "s", is_time) << name << " " << print;
+            } catch (const InputError& error) {
+                EXPECT_NE(absent, "") << error.what();
+                EXPECT_NE(error.message.find("'" + print + "' " + absent), std::string::npos) << error.message;
+            }
+        }
+    }
+    for (const char* count : {"impacts", "zeno_points", "sticks", "collapses", "jumps", "passes"})
+        EXPECT_TRUE(is_count_of_events(count)) << count;
+    for (const char* other : {"impact_time", "least_gap", "impact_speed", "e", ""})
+        EXPECT_FALSE(is_count_of_events(other)) << other;
+}
+
 }  // namespace
 }  // namespace achilles

@@ -176,7 +176,7 @@ TEST(Friction, IsNotCoveredByProofs) {
         return std::string();
     };
     EXPECT_EQ(refusal([&] { check(*model, problem_from_decimals(model->default_run())); }),
-              "typed.toml:12:13: a proof does not cover friction\n"
+              "typed.toml:12:13: a proof does not cover dry friction\n"
               "    friction = \"mu + exp(-slip)/10\"\n"
               "                ^\n"
               "achilles simulate runs this system, with an estimate of its error");

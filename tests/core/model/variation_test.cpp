@@ -28,7 +28,7 @@ constexpr int last_order = 14;
 constexpr std::size_t row_count = 3;   // x, x' and an event function
 using Values = std::array<double, 4>;  // of x, x', p and the time
 constexpr Values start_values = {0.3, 1.2, 1.7, 0.4};
-constexpr std::uint32_t variable_order[] = {3, 0, 2, 1};  // variable d is this one of them: in whatever order
+constexpr std::uint32_t variable_order[] = {3, 0, 2, 1};  // their order does not matter
 constexpr std::uint32_t directions = 2;                   // sixteen variables, of which the last four are those
 
 // x'' is this expression of x, y = x', the parameter p and the time t, and so is the gap.
@@ -56,7 +56,7 @@ SeriesOver<double> expansion(const SeriesProgram& program, const Values& at) {
     return series;
 }
 
-// By four values beside the start, to the fourth power of their distance.
+// The derivative by four values beside the start. Its error is of fourth order in their distance.
 double difference(const SeriesProgram& program, std::size_t variable, int k, std::size_t i) {
     constexpr double h = 0x1p-11;
     const auto at = [&](double distance) {
