@@ -181,7 +181,8 @@ void name_drawn(Panel& panel) {
 // Error of the quantities due to the rounding of coordinates and rates, relative to their ranges. A quantity that
 // varies by less is constant.
 struct Noise {
-    double x = 0.0, y = 0.0;  // maximum over all y quantities
+    double x = 0.0, y = 0.0;      // maximum over all y quantities
+    std::vector<double> least{};  // by quantity, x first: the smallest during the run
 };
 
 Noise noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Values& values, std::size_t count) {
@@ -192,6 +193,7 @@ Noise noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Va
         return std::max(std::abs(range[0]), std::abs(range[1]));
     };
     Noise noise;
+    noise.least.assign(count + 1, std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < std::min(samples.size(), looked_at); ++k) {
         Sample sample = samples[k * (samples.size() - 1) / std::max<std::size_t>(1, looked_at - 1)];
         std::vector<double> here(count + 1), off(count + 1);
@@ -208,7 +210,9 @@ Noise noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Va
         }
         for (std::size_t i = 0; i <= count; ++i) {
             double& most = i == 0 ? noise.x : noise.y;
-            if (std::isfinite(off[i])) most = std::max(most, off[i]);
+            if (!std::isfinite(off[i])) continue;
+            most = std::max(most, off[i]);
+            noise.least[i] = std::min(noise.least[i], off[i]);
         }
     }
     return noise;
@@ -324,8 +328,14 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
     DataRange x_range, y_range;
     x_range.positive = framing.log_x;
     y_range.positive = framing.log_y;
-    include(extent.samples, values, curves, framing, x_range, y_range);
     const Noise noise = noise_of(trajectory, extent.samples, values, curves);
+    if (framing.log_x || framing.log_y) {
+        std::vector<double> floors(curves + 1, 0.0);
+        for (std::size_t i = 0; i <= curves; ++i)
+            if ((i == 0 ? framing.log_x : framing.log_y) && std::isfinite(noise.least[i])) floors[i] = noise.least[i];
+        values.set_floors(std::move(floors));
+    }
+    include(extent.samples, values, curves, framing, x_range, y_range);
     set_axes(panel, trajectory, view, framing, x_range, y_range, noise);
     TraceRequest request;
     request.from = extent.from, request.to = extent.to;

@@ -113,7 +113,13 @@ class Values {
           quantities_(view.quantities()),
           forces_(*trajectory.model, trajectory.run.parameters) {}
     void set(const Sample& sample) { forces_.run_view(evaluator_, sample, reads_); }
-    double operator[](std::size_t i) const { return evaluator_.output(i) * quantities_[i].factor; }
+    double operator[](std::size_t i) const {
+        const double value = evaluator_.output(i) * quantities_[i].factor;
+        return floors_.empty() || std::abs(value) > floors_[i] ? value : 0.0;
+    }
+    // From now on a quantity whose size is at most its floor is 0: on a logarithmic axis, rounding errors of what is 0
+    // would have most of the decades.
+    void set_floors(std::vector<double> floors) { floors_ = std::move(floors); }
     // Whether a quantity depends on an input (model/derive.hpp).
     bool reads(std::size_t slot) const { return reads_[slot]; }
 
@@ -122,6 +128,7 @@ class Values {
     std::vector<bool> reads_;  // for each input slot: whether the program reads it
     std::span<const PreparedView::ViewQuantity> quantities_;
     ContactForces forces_;
+    std::vector<double> floors_{};  // by quantity, x first; empty: none
 };
 
 // A bar for each contact, then for each joint with friction, of a run up to the time `end` (s): filled in the color of

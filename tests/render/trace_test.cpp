@@ -264,5 +264,29 @@ TEST(Trace, ComposesAZoomAsFinelyAsTheWhole) {
     EXPECT_LT(panel.y.high, 0.05) << "the axis holds what is seen";
 }
 
+// In contact the gap, typed as an expression, is its rounding error. On a logarithmic axis it has no place, like 0.
+TEST(Trace, LogarithmicAxesShowNoRoundingErrors) {
+    const Trajectory run = run_until("ball_on_sine", 20.0);
+    const std::vector<Sample> samples = plot_samples(run);
+    Framing framing;
+    framing.log_y = true;
+    for (const char* x : {"t", "x"}) {
+        const Panel panel =
+            compose(run, samples, PreparedView(*run.model, view(x, "y - sin(x)")), light_theme(), framing);
+        EXPECT_GT(panel.y.low, 1e-14) << x;
+        EXPECT_GT(panel.y.high, 1.0) << x;
+        std::size_t count = 0;
+        for (const Curve& curve : panel.curves) count += curve.points.size();
+        EXPECT_TRUE(count > 100 && count < 5000) << x << " " << count;
+        EXPECT_TRUE(panel.curves.at(static_cast<std::size_t>(PhaseLook::contact)).points.empty()) << x;
+        for (const Markers& markers : panel.markers)
+            for (const Point& point : markers.points) EXPECT_TRUE(point.y == 0.0 || point.y > 1e-14) << point.y;
+    }
+    // What is small beside its largest value is no rounding error.
+    const Panel many = compose(run, samples, PreparedView(*run.model, view("t", "exp(20*x)")), light_theme(), framing);
+    EXPECT_LT(many.y.low, 2.0);
+    EXPECT_GT(many.y.high, 1e90);
+}
+
 }  // namespace
 }  // namespace achilles
