@@ -248,6 +248,19 @@ TEST(PlotInput, ADoubleClickKeepsTimeAndEvent) {
     EXPECT_EQ(hand.all, std::vector<Command>{command::Fit{2}});
     EXPECT_EQ(hand.session.time(), time);
     EXPECT_EQ(hand.session.selected(), 10);
+    // The same with some frames between its clicks, as a window that draws fast has.
+    hand.all.clear();
+    for (int i = 0; i < 2; ++i) {
+        hand.hand.left = true;
+        hand.rest(2);
+        hand.hand.left = false;
+        hand.rest(6);
+    }
+    hand.settle();
+    hand.rest(30);
+    EXPECT_EQ(hand.all, std::vector<Command>{command::Fit{2}});
+    EXPECT_EQ(hand.session.time(), time);
+    EXPECT_EQ(hand.session.selected(), 10);
     hand.click("plot 1", 0.7);
     EXPECT_NE(hand.session.time(), time);
 }

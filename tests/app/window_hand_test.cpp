@@ -220,6 +220,11 @@ TEST(Mechanism, ForcesHaveTheirValuesUnderTheMouse) {
     hands.rest(2);
     hands.point("body");
     EXPECT_TRUE(hands.says("force of contact: 9.81 N")) << hands.letters();
+    // The arrow says them, too, where it is outside the ball.
+    ASSERT_TRUE(hands.state.places.contains("force"));
+    hands.point("force");
+    EXPECT_FALSE(hands.says("drag to set")) << "the ball is too large for this test";
+    EXPECT_TRUE(hands.says("force of contact: 9.81 N")) << hands.letters();
     hands.session.apply(command::Seek{0.1});
     hands.rest(2);
     hands.point("body");
@@ -230,7 +235,7 @@ TEST(Mechanism, ForcesHaveTheirValuesUnderTheMouse) {
     rough.point("body");
     ASSERT_TRUE(rough.session.now().contact);
     EXPECT_TRUE(rough.says("friction of")) << rough.letters();
-    // The arrow at the contact says them, too, and what the friction could be.
+    // The same where the arrow at the contact is, inside the block, with what the friction could be.
     ASSERT_TRUE(rough.state.places.contains("force"));
     rough.point("force");
     EXPECT_TRUE(rough.says("normal force of")) << rough.letters();

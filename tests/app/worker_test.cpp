@@ -182,13 +182,17 @@ TEST(LiveSession, ACommandDuringCoarseCurvesCounts) {
 
 // Before it they would slow its picture down. A window updates the session twice until it shows a run.
 TEST(LiveSession, EstimatesAndProvesWhatIsOnTheScreen) {
+    std::atomic<int> results = 0;
     Session session = test::session("ball_on_sine");
     session.prove_behind();
     session.set_patience(20.0);
     session.apply(command::Set{"e", 0.45});
     std::this_thread::sleep_for(500ms);  // long enough for an estimate, if it had begun
+    session.on_ready([&] { ++results; });
     session.update();
     EXPECT_EQ(session.error_estimate(), nullptr);
+    std::this_thread::sleep_for(500ms);
+    EXPECT_EQ(results, 0) << "nothing begins at the first update";
     for (int i = 0; i < 20000 && session.shown_proof() == nullptr; ++i) {
         session.update();
         std::this_thread::sleep_for(1ms);

@@ -121,6 +121,21 @@ TEST(Curves, ALongCurveMayBeTheLastThingDrawn) {
     EXPECT_EQ(support::darkness(image, 300, 300), 0);
 }
 
+// The masks of all curves of a picture have places of their own, also where they need more than one row of them.
+TEST(Curves, ManyInOnePictureAreAsEachAlone) {
+    Offscreen surface(support::options());
+    const auto fan = [](int i) { return std::vector<Point>{{20.0, 20.0 + 30.0 * i}, {580.0, 22.0 + 32.0 * i}}; };
+    const Image all = support::picture(surface, [&](ImDrawList* list) {
+        for (int i = 0; i < 11; ++i) add_curve(list, fan(i), {full, 3.0, {}});
+    });
+    std::vector<int> sum(all.rgb.size() / 3);
+    for (int i = 0; i < 11; ++i) {
+        const Image alone = curve(surface, fan(i), {full, 3.0, {}});
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += 255 - alone.rgb[3 * k];
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k) ASSERT_EQ(255 - all.rgb[3 * k], sum[k]) << k % 600 << " " << k / 600;
+}
+
 TEST(Curves, ThinningCannotBeSeen) {
     Offscreen surface(support::options());
     std::vector<Point> fine, coarse;

@@ -188,6 +188,28 @@ TEST(Damage, APictureAfterAnotherIsThatOfAFreshSurface) {
     }
 }
 
+// Of a long edge only the part near what moves is drawn. The distances from it are those of the whole picture to the
+// last digit: rounded otherwise, a few pixels would get another shade.
+TEST(Damage, APartOfALongEdgeHasThePixelsOfTheWhole) {
+    const SurfaceOptions options = support::options(1500, 1500);
+    std::vector<Point> edges;
+    for (int i = 0; i < 40; ++i) {
+        edges.push_back({20.3 + 13.875 * i, 11.7 + 19.5 * i});
+        edges.push_back({1482.1 - 13.875 * i, 1486.6 - 16.5 * i});
+        edges.push_back(gap_point());
+    }
+    const auto draw_with_bar_at = [&](float x) {
+        return [&edges, x](ImDrawList* list) {
+            add_curve(list, edges, {{0, 0, 0, 255}, 1.3, {}});
+            list->AddRectFilled({x, 0.0F}, {x + 150.0F, 1500.0F}, haze);
+        };
+    };
+    Offscreen used(options), fresh(options);
+    support::picture(used, draw_with_bar_at(225.0F));
+    EXPECT_TRUE(support::picture(used, draw_with_bar_at(1125.0F)) ==
+                support::picture(fresh, draw_with_bar_at(1125.0F)));
+}
+
 // A large opaque rectangle is not drawn as triangles. It has the pixels whose centers are inside, and keeps its place
 // between what is drawn before and after it.
 TEST(Damage, ALargeRectangleHasThePixelsOfTriangles) {

@@ -192,6 +192,30 @@ TEST(Truncation, ADecisionAloneLeavesTheMotionAsItIs) {
     EXPECT_GT(as_narrow, 10);
 }
 
+// Where a force begins to see the contact at the Zeno point, the distances depend on the enclosure of that time, too.
+// If the wider one does not suffice for them, the decision is made with that of third order, as in a report.
+TEST(Truncation, ADecisionAboutDistancesHasTheThirdOrderIfItNeedsIt) {
+    const auto model = test::typed(R"toml(title = "floor that pushes"
+coordinate = [{name = "x", rate = 1, force = "100*held(floor)"}, {name = "y", force = "-1 - x"}]
+lagrangian = {kinetic = "1/2*(x'^2 + y'^2)", potential = "0"}
+constraint = [{name = "floor", gap = "y", restitution = 0.5}]
+)toml");
+    auto run = model->default_run();
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1.0;
+    const Vector q = Vector::Zero(2), s = Vector::Unit(2, 0);
+    const Collision collision{{q, s - 1e-3 * Vector::Unit(2, 1)}, 1e-3, s, s};
+    const auto report = truncation_conditions(*model, run)->certify(collision);
+    const auto wider = truncation_conditions(*model, run)->certify(collision, CertificateScope::decision);
+    ASSERT_TRUE(report && wider);
+    ASSERT_GT(*wider->uniform_position, 2.0 * *report->uniform_position);
+    run.options.truncation.eps_q = 1.5 * *report->uniform_position;
+    const auto decision = truncation_conditions(*model, run)->certify(collision, CertificateScope::decision);
+    ASSERT_TRUE(decision);
+    EXPECT_EQ(decision->zeno_low, report->zeno_low);
+    EXPECT_EQ(decision->zeno_high, report->zeno_high);
+    EXPECT_EQ(decision->uniform_position, report->uniform_position);
+}
+
 // With units so small that a_min^2 underflows, time and position of the Zeno point are bounded but the shadowing error
 // is not. Then no shadowing bound is reported, and none may cause a cut.
 TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
