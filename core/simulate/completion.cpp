@@ -251,6 +251,8 @@ void ExecutionAutomaton::pass_zeno_point() {
     }
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;
+    // After a plastic impact the state is still the one that it has made, so a guard that is zero has no event.
+    if (event.truncation && event.truncation->t == event.t) known_zeros_ = all_watched_guards();
     record_.event(std::move(event));
     if (!gone.empty()) return leave(gone);
     enter_phase();

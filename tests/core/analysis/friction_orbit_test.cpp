@@ -106,6 +106,25 @@ TEST(FreeShift, OfTheWoodpeckerIsFoundWithItsOrbit) {
             << i;
 }
 
+// A ball that is thrown up with the speed c whenever it falls to y = 0, and drifts along x. A free coordinate stays
+// where the search begins, for all parameters: the other coordinates close the orbit.
+TEST(FreeShift, LeavesItsCoordinateWhereTheSearchBegins) {
+    const auto model = typed(R"toml(
+coordinate = [{name = "x", start = 0.2, rate = 0.35, force = "0.3 - x'"}, {name = "y", start = 0.45, rate = 0.1}]
+parameter = [{name = "c", value = 1}]
+lagrangian = {kinetic = "(x'^2 + y'^2)/2", potential = "y"}
+constraint = [{gap = "y + 1", restitution = 0}]
+jump = [{name = "throw", on = "(y)", set = {"y'" = "c"}}]
+)toml");
+    const OrbitSearchResult found = search(model, 4.0, {{"2", {}}, {{"free", {}}, {"0", {}}}});
+    ASSERT_TRUE(found.orbit) << found.reason;
+    EXPECT_NEAR(found.orbit->period, 2.0, 1e-12);
+    EXPECT_NEAR(found.orbit->free.at(0).second, 0.6, 1e-12);
+    EXPECT_NEAR(found.orbit->state.q[0], 0.2, 1e-12);
+    EXPECT_NEAR(found.orbit->parameter_derivatives(0, 0), 0.0, 1e-12);
+    EXPECT_NEAR(found.orbit->parameter_derivatives(4, 0), 2.0, 1e-12);  // of the period
+}
+
 TEST(FreeShift, IsRefusedWhereTheMotionDependsOnTheCoordinate) {
     const OrbitSearchResult found =
         search(load("woodpecker"), 1.0, {{"0.146", {}}, {{"free", {}}, {"free", {}}, {"0", {}}}});

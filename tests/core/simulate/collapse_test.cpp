@@ -109,6 +109,23 @@ TEST(Collapse, CertificatesOfEarlyCutsContainTheTrueMotion) {
     EXPECT_GT(cuts.closest, 1e-4);  // else the bounds would say nothing
 }
 
+// A third coordinate along both planes: z'' = x' + y', so that z' - x - y never changes, whatever impacts and however
+// early the cut.
+TEST(Collapse, CutsKeepWhatNoImpactChanges) {
+    auto system = planes("0.9", "0.1", fast_start, "x + y")->description();
+    CoordinateDescription& z = system.coordinates.emplace_back();
+    z.name = "z";
+    z.force.text = "x' + y'";
+    system.kinetic.text += " + z'^2/2";
+    const auto model = std::make_shared<const Model>(std::move(system));
+    for (const double eps : {1e-2, 1e-3, 1e-6}) {
+        const Trajectory run = run_with(model, eps, Method::taylor);
+        ASSERT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+        EXPECT_EQ(collapses_of(run).size(), 1u);
+        EXPECT_NEAR(run.end.v[2] - run.end.q[0] - run.end.q[1], -run.run.q[0] - run.run.q[1], 1e-12) << eps;
+    }
+}
+
 // The impulses are those of the plastic impact on both, and the energy balance closes.
 TEST(Collapse, ReportsThePlasticImpact) {
     const auto model = load_collapse("collapse_both_open");

@@ -138,6 +138,27 @@ jump = [{{name = "j", on = "{}", set = {{x = "x"}}}}])toml",
     }
 }
 
+// An impact at t = 1 takes a positive function to 0, from where it falls or rises: it does not fall through zero.
+TEST(Jump, DoesNotFollowAnImpactThatTakesItsFunctionToZero) {
+    for (const auto& [e, on] : {std::pair("0", "1 - t - x'"),
+                                {"0", "t - 1 - x'"},
+                                {"1/2", "1/2 - x'"},
+                                {"1/2", "5/2 - x' - 2*t"},
+                                {"1", "3 - x' - 2*t"}})
+        for (const Method method : both_methods) {
+            SCOPED_TRACE(fmt::format("{} {} {}", e, on, to_text(method)));
+            const auto run = run_until(point(0.5, 0.0, "x",
+                                             fmt::format(R"toml(
+constraint = [{{name = "floor", gap = "x", restitution = "{}"}}]
+jump = [{{name = "j", on = "{}", set = {{x = "x + 1"}}}}])toml",
+                                                         e, on)),
+                                       1.25, method);
+            EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+            EXPECT_TRUE(events_of(run, Event::Kind::jump).empty());
+            EXPECT_LT(run.end.q[0], 0.5);
+        }
+}
+
 TEST(Jump, AtAStartOnItsZeroIsNoEvent) {
     for (const Method method : both_methods)
         for (const double speed : {-1.0, 0.0, 1.0}) {

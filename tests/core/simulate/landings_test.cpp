@@ -77,5 +77,31 @@ end_time = 2
     }
 }
 
+// One wall of the V is moved, so that it would be hit later by some units in the last place of the time. From 16 units
+// on the impacts have an order.
+TEST(SimultaneousImpacts, AreOneWithinTheResolutionOfTime) {
+    const double fall = std::sqrt(2.0 / 9.81), speed = 9.81 * fall * std::cos(0.6);
+    for (const double start : {10.0, 1000.0})
+        for (const double units : {0.0, 6.0, 12.0, 40.0}) {
+            SCOPED_TRACE(fmt::format("{} {}", start, units));
+            const double unit = std::nextafter(start + fall, 2.0 * start) - (start + fall);
+            const auto model = typed(fmt::format(R"toml(
+title = "V"
+coordinate = [{{ name = "x", start = 0 }}, {{ name = "y", start = 1 }}]
+lagrangian = {{ kinetic = "(x'^2 + y'^2)/2", potential = "9.81*y" }}
+constraint = [{{ name = "l", gap = "cos(0.6)*y - sin(0.6)*x", restitution = 0.5 }},
+              {{ name = "r", gap = "cos(0.6)*y + sin(0.6)*x + {:.17g}", restitution = 0.5 }}]
+[run]
+start_time = {}
+end_time = {}
+)toml",
+                                                 units * unit * speed, start, start + 1.5 * fall));
+            const Trajectory trajectory = simulate(model, model->default_run());
+            ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+            EXPECT_EQ(trajectory.events[0].contacts.count(), units < 16.0 ? 2 : 1);
+            EXPECT_EQ(trajectory.rerun_options.has_value(), units >= 16.0);
+        }
+}
+
 }  // namespace
 }  // namespace achilles::test

@@ -238,5 +238,22 @@ end_time = 5
     EXPECT_EQ(trajectory.end.v[0], 0.0);
 }
 
+// A force that is 0, which no algebra proves: the point rests, and its gap, which stays 0, raises no doubt.
+TEST(SymmetricRuns, APointAtRestThatJustTouchesIsNotRunAgain) {
+    const auto model = test::typed(R"toml(
+title = "Point that touches its stop"
+coordinate = [{ name = "x", start = 0, force = "sqrt(4) - 2" }]
+lagrangian = { kinetic = "x'^2/2", potential = "0" }
+constraint = [{ gap = "x", restitution = 0.5 }]
+[run]
+end_time = 5
+)toml");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    EXPECT_FALSE(trajectory.rerun_options) << trajectory.rerun_reason;
+    EXPECT_TRUE(trajectory.events.empty());
+    EXPECT_EQ(trajectory.end.q[0], 0.0);
+}
+
 }  // namespace
 }  // namespace achilles

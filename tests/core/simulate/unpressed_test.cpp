@@ -88,6 +88,27 @@ TEST(UnpressedContacts, DoNotIncludeForcesThatVanishForAnInstant) {
     EXPECT_NEAR(lifted.end.q[0], 0.5e-9 * 2.5 * 2.5, 1e-15);
 }
 
+// z begins to move from rest. Its rate presses or lifts x from the start on, with the known rate of the force; z itself
+// does so with the second rate, which is not examined.
+TEST(UnpressedContacts, DoNotIncludeForcesOfWhatBeginsToMove) {
+    const auto pulled_by = [](const std::string& force) {
+        return typed(fmt::format(R"toml(
+coordinate = [{{ name = "x", start = 0, force = "{}" }}, {{ name = "z", start = 0, force = "1" }}]
+lagrangian = {{ kinetic = "(x'^2 + z'^2)/2", potential = "0" }}
+constraint = [{{ name = "stop", gap = "x", restitution = 0 }}]
+[run]
+end_time = 2
+)toml",
+                                 force));
+    };
+    const Trajectory lifted = to_its_end(pulled_by("z'")), pressed = to_its_end(pulled_by("-z'"));
+    EXPECT_TRUE(lifted.end_mode.held().empty());
+    EXPECT_NEAR(lifted.end.q[0], 8.0 / 6.0, 1e-12);
+    EXPECT_EQ(pressed.end_mode.held(), ContactSet::of(0));
+    const auto later = pulled_by("z");
+    EXPECT_EQ(simulate(later, later->default_run()).outcome.kind, Outcome::Kind::undecided);
+}
+
 // A ball thrown at a plastic wall bounces on the floor beside it.
 std::shared_ptr<const Model> wall_and_floor(const std::string& factor, const std::string& force, double e_wall = 0.0) {
     return typed(fmt::format(R"toml(
