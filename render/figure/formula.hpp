@@ -1,6 +1,7 @@
 // Formulas as boxes. They are read from the LaTeX that the library writes (expression/notation.hpp), then measured and
 // typeset with fractions, roots, powers and indices, in lines that fit a width. Only geometry is computed here;
-// paint/paint.hpp draws it.
+// paint/paint.hpp draws it. That LaTeX is also what a user copies and what `check` prints: a second writer, of boxes,
+// would repeat its rules for brackets, signs and the order of factors.
 //
 // Names are labels (label.hpp), so that they look the same here as on an axis.
 #pragma once
