@@ -1,7 +1,7 @@
 #include "algebra/multinomial.hpp"
 
 #include <algorithm>
-#include <compare>
+#include <cstring>
 
 namespace achilles {
 
@@ -37,16 +37,16 @@ Multinomial merged(const Multinomial& a, const Multinomial& b, bool minus) {
     sum.reserve(a.terms().size() + b.terms().size());
     auto x = a.terms().begin(), y = b.terms().begin();
     while (x != a.terms().end() || y != b.terms().end()) {
-        const auto order = x == a.terms().end()   ? std::strong_ordering::less
-                           : y == b.terms().end() ? std::strong_ordering::greater
-                                                  : x->powers <=> y->powers;
-        if (std::is_gt(order)) {
+        const int order = x == a.terms().end()   ? -1
+                          : y == b.terms().end() ? 1
+                                                 : std::memcmp(x->powers.data(), y->powers.data(), sizeof(Monomial));
+        if (order > 0) {
             sum.push_back(*x++);
             continue;
         }
         Term term{y->powers, minus ? Integer(-y->coefficient) : y->coefficient};
         ++y;
-        if (std::is_eq(order)) term.coefficient += (x++)->coefficient;
+        if (order == 0) term.coefficient += (x++)->coefficient;
         if (term.coefficient != 0) sum.push_back(std::move(term));
     }
     return Multinomial::of_sorted(std::move(sum));

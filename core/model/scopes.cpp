@@ -355,7 +355,8 @@ std::span<const NamedRunQuantity> run_quantities() {
 
 const NamedRunQuantity* run_quantity(std::string_view name) {
     const auto all = run_quantities();
-    const auto found = std::ranges::find(all, name, &NamedRunQuantity::name);
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const NamedRunQuantity& one) { return one.name == name; });
     return found == all.end() ? nullptr : &*found;
 }
 
