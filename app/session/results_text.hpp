@@ -60,7 +60,7 @@ struct CertificateText {
     std::vector<Row> rows;  // empty: nothing had to be decided
     std::string not_covered;
 };
-// Of an event with a certificate.
+// The event must have a certificate.
 CertificateText certificate_text(const Session& session, std::size_t event);
 
 // The bounds of the certificate line by line, for the details. The Zeno time is not among them: event_time() has it.

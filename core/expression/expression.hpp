@@ -136,7 +136,7 @@ class Graph {
 };
 
 // The derivative of each expression along a direction: the sum over i of direction[i] times the derivative by the symbol
-// of slots[i]. All are taken in one pass over the graph.
+// of slots[i]. One pass over the graph computes all of them.
 std::vector<Expression> derivative_along(std::span<const Expression> expressions, std::span<const std::uint32_t> slots,
                                          std::span<const Expression> direction);
 // d(expression)/d(symbol `slot`). For a list, all derivatives are taken in one pass.

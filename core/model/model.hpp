@@ -64,8 +64,8 @@ class Model {
     // The same mode with hddot of every contact as event functions, for proofs (make_hddot_series).
     const SeriesProgram& hddot_series(Mode mode) const;
 
-    // The motion together with its derivatives. Each of the `directions` stands for eight, one in each lane. It is compiled
-    // at first use.
+    // The motion together with its derivatives along `directions` groups of eight directions; each lane computes one
+    // direction of a group. It is compiled at first use.
     const MotionVariation& variation(Mode mode, std::uint32_t directions) const;
 
     // The programs of one contact in a mode in which it is open, compiled at first use.

@@ -62,7 +62,7 @@ struct RunQuantity {
     friend bool operator==(const RunQuantity&, const RunQuantity&) = default;
 };
 
-// The name of each such quantity.
+// A quantity of a run with the name that expressions use.
 struct NamedRunQuantity {
     std::string_view name;
     RunQuantity quantity;

@@ -20,8 +20,8 @@ struct VariationLayout {
 
 // With a = f(q, v, p, t), the derivatives obey the variational equation a' = f_q q' + f_v v' + f_p p' + f_t t'. The motion
 // and its derivatives together are a motion with copies() times as many coordinates and gaps. The gaps of held contacts
-// are 0. The outputs of the series are the accelerations, copy after copy, then the gaps. Over eight lanes, each
-// direction stands for eight, one in each lane.
+// are 0. The outputs of the series are the accelerations, copy after copy, then the gaps. With eight lanes, each
+// lane computes the derivatives along another direction.
 struct MotionVariation {
     VariationLayout layout;
     SeriesProgram series;

@@ -242,7 +242,7 @@ struct DerivedTerm {
 struct MechanismTerms {
     DerivedTerm kinetic;
     std::vector<DerivedTerm> potential, dissipation;
-    std::vector<std::vector<DerivedTerm>> forces;  // by coordinate
+    std::vector<std::vector<DerivedTerm>> forces;  // one list for each coordinate
     bool is_prescribed = false;                    // time moves a mass
 };
 
@@ -268,7 +268,7 @@ PointDistance distance_between(const PlacedMechanism& mechanism, const NamedPoin
 
 struct ShapeContact {
     ProductSum gap, slip;
-    ProductSum scale;                      // of both: the gap is this times a distance; 0 stands for 1
+    ProductSum scale;                      // gap and slip are a distance and a velocity times this factor; 0 means 1
     bool has_slip = true;                  // false: a string
     std::string name;                      // "shank.end on floor"
     std::string force;                     // what lambda is: "a distance: lambda is the force"

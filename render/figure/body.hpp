@@ -61,7 +61,7 @@ struct WayPoint {
 // Position of a sample in a plane.
 using PlaceOf = std::function<Point(const Sample&)>;
 // Trail of a place during [from, to] (s), as fine as the picture `seen` needs (trace.hpp), or straight `through` some
-// of these samples. All points of one look stand together, in order of time.
+// of these samples. The list contains all points of the first look in order of time, then those of the next look.
 std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double to, const Drawing& seen,
                              const PlaceOf& place, std::span<const Sample> through = {});
 

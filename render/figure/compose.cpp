@@ -182,7 +182,7 @@ void name_drawn(Panel& panel) {
 // varies by less is constant.
 struct Noise {
     double x = 0.0, y = 0.0;      // maximum over all y quantities
-    std::vector<double> least{};  // by quantity, x first: the smallest during the run
+    std::vector<double> least{};  // the smallest error of each quantity, beginning with x, during the run
 };
 
 Noise noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Values& values, std::size_t count) {

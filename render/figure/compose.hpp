@@ -128,7 +128,7 @@ class Values {
     std::vector<bool> reads_;  // for each input slot: whether the program reads it
     std::span<const PreparedView::ViewQuantity> quantities_;
     ContactForces forces_;
-    std::vector<double> floors_{};  // by quantity, x first; empty: none
+    std::vector<double> floors_{};  // one for each quantity, beginning with x; empty if there is none
 };
 
 // A bar for each contact, then for each joint with friction, of a run up to the time `end` (s): filled in the color of
